@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-PACKAGES = ("models", "ocp", "metaheuristics", "studies")
+PACKAGES = ("models", "ocp", "metaheuristics", "machine", "views", "studies")
 
 
 class PackageLinks(BuildHookInterface):

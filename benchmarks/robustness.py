@@ -35,8 +35,8 @@ from quietarm.ocp import (
     shaped_cycloid,
 )
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.studies.figures import BLUE, RED, stack
-from quietarm.studies.figures.axes import head
+from quietarm.views.pictures import BLUE, RED, stack
+from quietarm.views.pictures.axes import head
 
 LINK, ARM, LINKS = SingleLinkManipulator(), ArmOnFlexibleLink(), DualLinkManipulator()
 MOVES = {

@@ -30,9 +30,9 @@ import xarray as xr
 
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, plan_move, plan_moves
-from quietarm.studies.sweep.cells import plan_chunk
 from quietarm.studies.sweep.definition import Definition, PlanSettings
-from quietarm.studies.sweep.grid import Axis, MoveGrid
+from quietarm.studies.sweep.grid_cells import plan_chunk
+from quietarm.studies.sweep.move_grid import Axis, MoveGrid
 
 QUIETARM = str(Path(sys.executable).parent / "quietarm")
 

@@ -11,6 +11,7 @@ import re
 import shutil
 import sys
 from importlib import import_module
+from inspect import ismodule
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -71,13 +72,12 @@ autodoc_preserve_defaults = True  # as they stand in the source, without address
 toc_object_entries_show_parents = "hide"
 napoleon_numpy_docstring, napoleon_google_docstring = True, False
 suppress_warnings = ["ref.python"]  # a shape as (points, 2) looks like a name
-_STUDIES = {
-    "figures": "Pictures",
-    "identify": "Identification",
-    "sweep": "Grids of moves",
-    "bench": "Benches",
-    "compare": "Comparison",
+_ROOMS = {
+    "machine": {"identify": "Identification"},
+    "views": {"pictures": "Pictures"},
+    "studies": {"sweep": "Grids of moves", "bench": "Benches", "compare": "Comparison"},
 }
+"""Rooms whose names stand on the page of their package, below its own."""
 _TAG = re.compile(r"\\tag\{(.*?)\}")
 
 
@@ -137,17 +137,19 @@ def _fill(app, docname, source):
             command = f"quietarm.studies.cli.commands.{own}:{own}"
             directive = f".. click:: {command}\n   :prog: quietarm {name}"
             source[0] += f"\n```{{eval-rst}}\n{directive}\n```\n"
-    if docname == "docs/reference/studies":
-        for name, title in _STUDIES.items():
-            source[0] += f"\n## {title}\n{_reference(f'studies.{name}')}"
-    elif docname.startswith("docs/reference/"):
-        source[0] += _reference(Path(docname).name)
+    if docname.startswith("docs/reference/"):
+        package = Path(docname).name
+        rooms = _ROOMS.get(package, {})
+        source[0] += _reference(package)
+        for name, title in rooms.items():
+            source[0] += f"\n## {title}\n{_reference(f'{package}.{name}')}"
 
 
 def _reference(package):
-    """What autodoc is asked for all public names of a package."""
+    """What autodoc is asked for all public names of a package that are no rooms."""
     module = import_module(f"quietarm.{package}")
-    names = sorted({*module.__all__} - {"__version__"}, key=str.lower)
+    public = {name for name in module.__all__ if not ismodule(getattr(module, name))}
+    names = sorted(public - {"__version__"}, key=str.lower)
     described = "".join(_described(package, name, getattr(module, name)) for name in names)
     return f"\n```{{eval-rst}}\n{described}```\n"
 

@@ -39,7 +39,7 @@ from PIL import Image
 
 import quietarm as qa
 from quietarm.studies.cli import main
-from quietarm.studies.figures.axes import NARROW, TITLE, head, legend_below, new_figure
+from quietarm.views.pictures.axes import NARROW, TITLE, head, legend_below, new_figure
 
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
@@ -139,7 +139,7 @@ def _picture_of(figure: Figure, name: str, path: Path, quick: bool) -> Picture:
     narrow = None
     stacked = None
     if not quick and path.suffix != ".gif":
-        stacked = FOR_PHONES.get(name, qa.figures.stack)(figure)
+        stacked = FOR_PHONES.get(name, qa.pictures.stack)(figure)
     if stacked is not None:
         content = io.BytesIO()
         stacked.savefig(content, format="png", dpi=150)
@@ -154,7 +154,7 @@ def torques_of_joints(whole: Figure) -> Figure:
     figure = new_figure(NARROW, 2.0 + 1.7 * len(names))
     axes = list(figure.subplots(len(names), 1))
     for joint, (name, ax) in enumerate(zip(names, axes)):
-        title = qa.figures.draw_quantity(plan, "torque", ax, curve=joint).get_title(loc="left")
+        title = qa.pictures.draw_quantity(plan, "torque", ax, curve=joint).get_title(loc="left")
         ax.set_title(f"{title}, {name}", **TITLE)
     for ax in axes[:-1]:
         ax.set_xlabel("")
@@ -233,8 +233,8 @@ def _put_files_of_page(page: str) -> None:
 def fronts_compared(quick: bool) -> Picture:
     """Fronts of the arm's first move: five seeds of the paper's searches, and the gradient's."""
     from quietarm.studies.compare import compare_fronts
-    from quietarm.studies.figures import comparison_figure
     from quietarm.studies.reproduce.paper import ARM_HALF, paper_points
+    from quietarm.views.pictures import comparison_figure
 
     task = ARM_HALF.task
     fewer = {"generations": 60} if quick else {}  # by then every method comes within 1 mm

@@ -68,9 +68,13 @@ class ModalState:
             )
 
 
-_UNITS = {"start": "rad", "target": "rad", "duration": "s", "residual window": "s"} | {
-    f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()
-}
+OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
+"""What a move has, by name, with its unit."""
+_UNITS = (
+    OF_MOVES
+    | {"residual window": "s"}
+    | {f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()}
+)
 LEAST_DURATION = 1e-6
 LEAST_MOVE = 1e-9
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""

@@ -1,7 +1,11 @@
+from . import machine as machine
 from . import metaheuristics as metaheuristics
 from . import models as models
 from . import ocp as ocp
 from . import studies as studies
+from . import views as views
+from .machine import Recording as Recording
+from .machine.identify import identify as identify
 from .metaheuristics import search as search
 from .models import ArmOnFlexibleLink as ArmOnFlexibleLink
 from .models import Beam as Beam
@@ -43,10 +47,8 @@ from .ocp import shaped_cycloid as shaped_cycloid
 from .ocp import weighted_front as weighted_front
 from .studies import bench as bench
 from .studies import compare as compare
-from .studies import figures as figures
-from .studies.figures import motion_figure as motion_figure
-from .studies.identify import Recording as Recording
-from .studies.identify import identify as identify
 from .studies.sweep import sweep as sweep
+from .views import pictures as pictures
+from .views.pictures import motion_figure as motion_figure
 
 __version__: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import lazy_loader
@@ -10,7 +10,18 @@ import lazy_loader
 from quietarm.interrupts import interruptible
 
 
-def attach(package: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], Any]:
-    """What `lazy_loader.attach_stub` gives: `__getattr__`, `__dir__` and `__all__` of a package."""
+def attach(
+    package: str, file: str, moved: Mapping[str, str] | None = None
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], Any]:
+    """What `lazy_loader.attach_stub` gives: `__getattr__`, `__dir__` and `__all__` of a package.
+
+    AttributeError of a name that has moved says where to.
+    """
     load, listed, names = lazy_loader.attach_stub(package, file)
-    return interruptible(load), listed, names
+
+    def load_or_say(name: str) -> Any:
+        if moved and name in moved:
+            raise AttributeError(f"{package}.{name} has moved to {package}.{moved[name]}")
+        return load(name)
+
+    return interruptible(load_or_say), listed, names

@@ -72,7 +72,7 @@ def _plants_of_this_test_are_forgotten(monkeypatch):
 
 @pytest.fixture
 def quick_pictures(monkeypatch):
-    """Draw pictures coarsely, without a layout: tests/studies/figures looks at them."""
+    """Draw pictures coarsely, without a layout: tests/views/pictures looks at them."""
     from matplotlib.figure import Figure  # most tests draw nothing
 
     whole = Figure.savefig

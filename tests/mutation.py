@@ -50,7 +50,7 @@ TESTS = {
     "models/single_link.py": ["models"],
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
-    "ocp/simulation/collocation.py": [*QUICK, *SLOW, "studies/identify/test_identify.py"],
+    "ocp/simulation/collocation.py": [*QUICK, *SLOW, "machine/identify/test_identify.py"],
     "ocp/simulation/objective.py": [*QUICK, "ocp/test_candidate.py", "ocp/test_energies.py", *SLOW],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/check_profile.py": ["ocp/profiles"],

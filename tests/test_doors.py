@@ -43,8 +43,8 @@ def _kind_of(annotation):
 
 def _public():
     """What every package, and every room of `studies` that users call, gives by name."""
-    homes = [qa.models, qa.ocp, qa.metaheuristics, qa.figures, qa.compare, qa.bench]
-    homes += [qa.studies.identify, qa.studies.sweep]
+    homes = [qa.models, qa.ocp, qa.metaheuristics, qa.pictures, qa.compare, qa.bench]
+    homes += [qa.machine.identify, qa.studies.sweep]
     return {name: getattr(home, name) for home in homes for name in dir(home)}
 
 
@@ -184,7 +184,7 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
         (lambda task: qa.search(task, "nsga2", bound=0.2), "a method is given as algorithm=..."),
         (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
         (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
-        (lambda task: qa.figures.draw_quantity([], "sped"), "did you mean 'speed'?"),
+        (lambda task: qa.pictures.draw_quantity([], "sped"), "did you mean 'speed'?"),
         (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 1 number"),
         (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
         (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
@@ -264,7 +264,7 @@ def test_so_is_no_entry_of_a_task(name, value):
         (lambda: qa.deg("30"), "degrees are '30'; give a number, as deg(30)"),
         (lambda: qa.JointSpline(25), "knots is 25; give a list of fractions, as [0.3, 0.7]"),
         (lambda: qa.CycloidSpline(True), "terms is True; give a whole number"),
-        (lambda: qa.figures.Line(3, "x"), "plan is 3; give a plan, as Plan.load('plan.json')"),
+        (lambda: qa.pictures.Line(3, "x"), "plan is 3; give a plan, as Plan.load('plan.json')"),
         (lambda: qa.Uncertainty({"frequency": "0.1"}), "is '0.1'; give a number"),
         (lambda: qa.CopperLoss("0.1"), "motor constant is '0.1'; give a number"),
         (lambda: qa.ocp.ModalState(["0.1"], [0]), "is '0.1'; give a number"),

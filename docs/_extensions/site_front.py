@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import pi
 
 import quietarm as qa
-from quietarm.studies.export import trade_off
+from quietarm.views import trade_off
 
 
 def page_of_fronts():

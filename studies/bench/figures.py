@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
-from quietarm.studies.figures.axes import TITLE, legend_below, logarithmic, new_figure
-from quietarm.studies.figures.grammar import PLAN, SEARCH, Look, looks
+from quietarm.views.pictures.axes import TITLE, legend_below, logarithmic, new_figure
+from quietarm.views.pictures.grammar import PLAN, SEARCH, Look, looks
 
 _COSTS = {"seconds": "processor time [s]", "evaluations": "candidates simulated"}
 

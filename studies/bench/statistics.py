@@ -16,7 +16,7 @@ from scipy import stats
 
 from quietarm.metaheuristics import NamedProblem
 from quietarm.studies.bench.results import Results, bench_label, quartiles, told_apart
-from quietarm.studies.report.words import counted
+from quietarm.views.report.words import counted
 
 Array = NDArray[np.float64]
 ALPHA = 0.05

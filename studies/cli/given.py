@@ -10,10 +10,12 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
+from quietarm.machine.identify import Identified
 from quietarm.models import Plant, Robot, RobotOnPath
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
+from quietarm.ocp.planning.named_profiles import profile_of
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.cli.effort import announce_minutes, refuse_endless, seconds_of_solve
 from quietarm.studies.cli.plants import (
@@ -31,10 +33,8 @@ from quietarm.studies.cli.quantities import (
     parse_parameters,
     single_values,
 )
-from quietarm.studies.cli.robots import LINE_NAMES, OF_ROBOT, read_robot_task
-from quietarm.studies.identify import Identified
-from quietarm.studies.reading.profiles import profile_of
-from quietarm.studies.sweep.grid import OF_MOVES, Axis, MoveGrid
+from quietarm.studies.cli.robot_options import LINE_NAMES, OF_ROBOT, read_robot_task
+from quietarm.studies.sweep.move_grid import OF_MOVES, Axis, MoveGrid
 
 
 class Given:

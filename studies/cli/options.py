@@ -16,6 +16,7 @@ from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+from quietarm.ocp.planning.named_profiles import POLYNOMIAL, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.ocp.solvers.solver import Solver
@@ -31,9 +32,8 @@ from quietarm.studies.cli.quantities import (
     parse_workers,
 )
 from quietarm.studies.cli.types import INPUT, SETTING, SHARE, TIME, Named, Parsed
-from quietarm.studies.reading.profiles import POLYNOMIAL, families
-from quietarm.studies.report.progress import count, working
-from quietarm.studies.report.saving import STDOUT
+from quietarm.views.report.progress import count, working
+from quietarm.views.report.saving import STDOUT
 
 
 def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> click.Option:  # noqa: A002

@@ -8,13 +8,13 @@ from math import tau
 
 from rich.console import Console
 
+from quietarm.machine.identify import Identified
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import unknown
 from quietarm.studies.cli.quantities import MEASURED, once
-from quietarm.studies.identify import Identified
-from quietarm.studies.report.terminal import print_lines
-from quietarm.studies.report.words import note_lines
+from quietarm.views.report.terminal import print_lines
+from quietarm.views.report.words import note_lines
 
 Kind = type[Plant] | Identified | Robot
 """What PLANT names: a class of plants, an identified machine, or a robot."""

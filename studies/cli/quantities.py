@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from quietarm.machine.tables.column_units import OF_OPTIONS, normal
 from quietarm.metaheuristics.objective.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
@@ -26,8 +27,7 @@ from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.ocp.objectives import checked_objectives
-from quietarm.studies.reading.units import OF_OPTIONS, normal
-from quietarm.studies.sweep.grid import MOST_VALUES, OF_MOVES
+from quietarm.studies.sweep.move_grid import MOST_VALUES, OF_MOVES
 
 S = TypeVar("S")
 T = TypeVar("T")

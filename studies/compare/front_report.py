@@ -12,16 +12,16 @@ from quietarm.metaheuristics.score import BETWEEN, INDICATORS
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.ocp.objectives import objectives_on
-from quietarm.studies import figures
 from quietarm.studies.compare.front_comparison import (
     Comparison,
     Group,
     compare_fronts,
     differ_in_window_alone,
 )
-from quietarm.studies.figures.comparison import KnownPoint
-from quietarm.studies.report import Report
-from quietarm.studies.report.words import (
+from quietarm.views import pictures
+from quietarm.views.pictures.comparison_figures import KnownPoint
+from quietarm.views.report import Report
+from quietarm.views.report.words import (
     objective_words,
     residual_place,
     spread_words,
@@ -29,7 +29,7 @@ from quietarm.studies.report.words import (
     values_words,
     window_words,
 )
-from quietarm.studies.tips import tip_scale, tip_words
+from quietarm.views.tips import tip_scale, tip_words
 
 _WINDOW = "residual window [s]"
 """Column of `methods.csv`."""
@@ -164,7 +164,7 @@ def fronts_report(
 
     Of `unsealed` files it says that nothing vouches for what they say of their effort.
     """
-    pictures = (
+    names = (
         ["fronts.png"]
         if len(comparisons) == 1
         else [f"fronts-{i}.png" for i in range(1, len(comparisons) + 1)]
@@ -172,9 +172,9 @@ def fronts_report(
     tables = [methods_table(comparison) for comparison in comparisons]
     moves = zip(comparisons, tables)
     return Report(
-        "compare/fronts.md",
+        "studies/compare/fronts.md",
         {
-            "parts": list(zip(comparisons, map(_shown, tables), pictures)),
+            "parts": list(zip(comparisons, map(_shown, tables), names)),
             "title_of": title_of,
             "in_words": _in_words,
             "objective_words": objective_words,
@@ -197,7 +197,7 @@ def fronts_report(
             "runs": pd.concat(map(runs_table, comparisons)),
         },
         {
-            name: partial(figures.comparison_figure, comparison, points)
-            for name, comparison, points in zip(pictures, comparisons, known)
+            name: partial(pictures.comparison_figure, comparison, points)
+            for name, comparison, points in zip(names, comparisons, known)
         },
     )

@@ -21,7 +21,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
-from quietarm.studies.figures.meaning import meaning_of
+from quietarm.views.pictures.meaning import meaning_of
 
 SAMPLES = 2000
 """Random plants for the percentiles."""

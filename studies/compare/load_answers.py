@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from quietarm.ocp import FileFormatError, Front, Plan
-from quietarm.studies.reading.saved import format_of, load_front, load_plans
+from quietarm.studies.answers.read_answers import format_of, load_front, load_plans
 
 _FRONT = f"quietarm-{Front.kind}"
 _PLAN = f"quietarm-{Plan.kind}"

@@ -13,7 +13,6 @@ from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.studies import figures
 from quietarm.studies.compare.baselines import TOPPRA, baseline, choose_baselines
 from quietarm.studies.compare.judged_motions import (
     SAMPLES,
@@ -22,15 +21,16 @@ from quietarm.studies.compare.judged_motions import (
     merged_ranges,
     refuse_other_moves,
 )
-from quietarm.studies.report import Report
-from quietarm.studies.report.words import (
+from quietarm.views import pictures
+from quietarm.views.report import Report
+from quietarm.views.report.words import (
     note_lines,
     title_of,
     title_of_picture,
     unit_of_way,
     window_words,
 )
-from quietarm.studies.tips import tip_scale
+from quietarm.views.tips import tip_scale
 
 _WHY = "why there is none"
 """Column of a table for files; a page lists the reasons below."""
@@ -190,7 +190,7 @@ def plans_report(
     robust = next((motion.robustness for motion in motions if motion.robustness), None)
     ranges = next((motion.worst.errors for motion in motions if motion.worst), {})
     return Report(
-        "compare/plans.md",
+        "studies/compare/plans.md",
         {
             "title": title_of(task),
             "shown": shown(table),
@@ -208,7 +208,7 @@ def plans_report(
         {"motions": table},
         {
             "motions.png": partial(
-                figures.motions_figure, motions, title_of_picture(task), task.plant.tip_unit
+                pictures.motions_figure, motions, title_of_picture(task), task.plant.tip_unit
             )
         },
     )

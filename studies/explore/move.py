@@ -16,12 +16,12 @@ from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
 from quietarm.ocp.front.curve import Progress, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
+from quietarm.ocp.planning.named_profiles import families, profile_of
 from quietarm.ocp.window import default_window
-from quietarm.studies.export.formats import export_plan
-from quietarm.studies.reading.profiles import families, profile_of
-from quietarm.studies.report.words import moved, raised
-from quietarm.studies.sweep.grid import OF_MOVES
 from quietarm.studies.sweep.library import MoveLibrary
+from quietarm.studies.sweep.move_grid import OF_MOVES
+from quietarm.views.formats.formats import export_plan
+from quietarm.views.report.words import moved, raised
 
 FRONT_POINTS = 20
 """Enough for a line, within a second."""

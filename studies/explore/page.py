@@ -30,13 +30,13 @@ from jinja2 import Environment, PackageLoader
 from quietarm.models import Plant
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.escapes import html_text
+from quietarm.ocp.planning.named_profiles import families
 from quietarm.studies.explore.move import FILES, Dial, Explored
 from quietarm.studies.explore.plots import PANELS, Plots
-from quietarm.studies.figures.grammar import INK, RED
-from quietarm.studies.figures.meaning import is_plain_cycloid
-from quietarm.studies.reading.profiles import families
-from quietarm.studies.report.moves import HARD_REMEDIES, plan_rows
-from quietarm.studies.report.words import raised
+from quietarm.views.pictures.grammar import INK, RED
+from quietarm.views.pictures.meaning import is_plain_cycloid
+from quietarm.views.report.plan_rows import HARD_REMEDIES, plan_rows
+from quietarm.views.report.words import raised
 
 Change = Callable[[Explored], Explored]
 _WAIT = 5

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import Plant
 from quietarm.ocp import Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.studies.explore.move import Explored
-from quietarm.studies.figures.axes import residual_label
-from quietarm.studies.figures.grammar import (
+from quietarm.views.pictures.axes import residual_label
+from quietarm.views.pictures.grammar import (
     AFTER_ARRIVAL,
     ARRIVAL,
     FAINT,
@@ -28,11 +28,11 @@ from quietarm.studies.figures.grammar import (
     Look,
     looks,
 )
-from quietarm.studies.figures.meaning import meaning_of
-from quietarm.studies.figures.motion import Line, curves, heading, limits_in_sight
-from quietarm.studies.figures.structure import Structure, structures_of
-from quietarm.studies.report.words import residual_words
-from quietarm.studies.tips import tip_scale
+from quietarm.views.pictures.meaning import meaning_of
+from quietarm.views.pictures.motion import Line, curves, heading, limits_in_sight
+from quietarm.views.pictures.structure import Structure, structures_of
+from quietarm.views.report.words import residual_words
+from quietarm.views.tips import tip_scale
 
 _DASHES = {"-": "solid", "--": "dashed", ":": "dotted"}
 """The dashes of the grammar of pictures, as bokeh calls them."""

@@ -10,10 +10,10 @@ from quietarm.models import Plant, known_plants
 from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, evaluate_coefficients
 from quietarm.ocp.objectives import refuse_peaks
+from quietarm.studies.answers.read_answers import format_of, load_front, load_plans
 from quietarm.studies.explore.move import Explored
-from quietarm.studies.reading.saved import format_of, load_front, load_plans
-from quietarm.studies.report.words import plant_words
 from quietarm.studies.sweep.library import MoveLibrary
+from quietarm.views.report.words import plant_words
 
 
 def open_plant(plant: Plant) -> Explored:

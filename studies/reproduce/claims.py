@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from scipy.stats import wilcoxon
 
 from quietarm.ocp import Plan
-from quietarm.studies.report.words import spread_words
 from quietarm.studies.reproduce.paper import (
     ARM_HALF,
     SINGLE_LINK_SIXTH,
@@ -24,6 +23,7 @@ from quietarm.studies.reproduce.paper import (
 )
 from quietarm.studies.reproduce.recompute import BEYOND_SIX, Reproduction
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS, SIX_TERMS, Searched
+from quietarm.views.report.words import spread_words
 
 _GAIN = 0.01
 """Energies that differ by more than this share differ."""

@@ -15,8 +15,8 @@ from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import Plan, PointToPoint, evaluate_coefficients, task_difference
 from quietarm.ocp.window import EQ_11
-from quietarm.studies.figures import KnownPoint
-from quietarm.studies.report.words import counted
+from quietarm.views.pictures import KnownPoint
+from quietarm.views.report.words import counted
 
 _PLANTS = {plant.name: plant for plant in (SingleLinkManipulator(), ArmOnFlexibleLink())}
 _OF_PLANT = {

@@ -26,11 +26,11 @@ from quietarm.ocp import (
     evaluate_coefficients,
     plan_move,
 )
+from quietarm.ocp.planning.named_profiles import OTHERS
 from quietarm.ocp.record import versions
 from quietarm.ocp.robustness import tolerated_residual
 from quietarm.studies.compare.judged_motions import JudgedMotion, judge_motion
 from quietarm.studies.compare.plan_comparison import compare_plans
-from quietarm.studies.reading.profiles import OTHERS
 from quietarm.studies.reproduce.paper import (
     CONDITIONS,
     ROWS,

@@ -9,7 +9,7 @@ import numpy as np
 
 from quietarm.metaheuristics.spread import Spread, energies_at
 from quietarm.ocp import CycloidPolynomial, Front, JointProfile, Plan, evaluate_coefficients
-from quietarm.studies.reading.profiles import OTHERS
+from quietarm.ocp.planning.named_profiles import OTHERS
 from quietarm.studies.reproduce.paper import Case, residual_level
 
 SIX_TERMS = 6

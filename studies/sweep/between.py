@@ -20,8 +20,9 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.solvers.problem import first_steps
-from quietarm.studies.sweep.grid import OF_MOVES, by_plant
-from quietarm.studies.tips import tip_words
+from quietarm.ocp.task import OF_MOVES
+from quietarm.studies.sweep.move_grid import by_plant
+from quietarm.views.tips import tip_words
 
 if TYPE_CHECKING:
     from quietarm.studies.sweep.library import MoveLibrary

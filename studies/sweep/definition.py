@@ -17,7 +17,7 @@ from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.robustness import OF_MODES
 from quietarm.ocp.solvers.choice import stated_solver
-from quietarm.studies.sweep.grid import MoveGrid
+from quietarm.studies.sweep.move_grid import MoveGrid
 
 STATUS = "status"
 COEFFICIENTS = "coefficients"

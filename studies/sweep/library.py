@@ -13,8 +13,8 @@ from quietarm.interrupts import interruptible
 from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.between import Between, assess
+from quietarm.studies.sweep.cell_interpolation import Interpolation
 from quietarm.studies.sweep.definition import COEFFICIENTS
-from quietarm.studies.sweep.interpolation import Interpolation
 from quietarm.studies.sweep.store import Store
 
 Array = NDArray[np.float64]

@@ -14,9 +14,10 @@ from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
 from quietarm.ocp.checks import has_no, several, takes
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.studies.sweep.cells import plan_chunk
+from quietarm.ocp.task import OF_MOVES
 from quietarm.studies.sweep.definition import Definition, PlanSettings
-from quietarm.studies.sweep.grid import OF_MOVES, Axis, MoveGrid
+from quietarm.studies.sweep.grid_cells import plan_chunk
+from quietarm.studies.sweep.move_grid import Axis, MoveGrid
 from quietarm.studies.sweep.store import Store
 
 if TYPE_CHECKING:

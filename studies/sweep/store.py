@@ -24,8 +24,8 @@ from quietarm.ocp.files import unwritable
 from quietarm.ocp.json_text import refuse_repeated
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
+from quietarm.studies.sweep.cell_interpolation import find_jumps
 from quietarm.studies.sweep.definition import COEFFICIENTS, DIGEST, JUMP, STATUS, Definition
-from quietarm.studies.sweep.interpolation import find_jumps
 
 if TYPE_CHECKING:
     import pandas

@@ -26,7 +26,7 @@ from parts.crossover.shared_terms import SharedTerms  # noqa: E402
 from parts.crossover.subset import best_subset  # noqa: E402
 
 import quietarm as qa  # noqa: E402
-from quietarm.studies.figures import grammar  # noqa: E402
+from quietarm.views.pictures import grammar  # noqa: E402
 
 recompute = page.recompute_module(RESULTS)
 DRAWN = read_moves(RESULTS / "moves.csv")

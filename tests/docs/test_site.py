@@ -362,7 +362,7 @@ def test_code_behind_a_picture_stays_as_it_is():
 
 def test_a_signature_breaks_behind_its_package():
     name = '<span class="sig-name descname">comparison_figure</span>'
-    dt = f'<dt class="sig"><span class="sig-prename">quietarm.studies.figures.</span>{name}</dt>'
+    dt = f'<dt class="sig"><span class="sig-prename">quietarm.views.pictures.</span>{name}</dt>'
     assert words.keep_whole(dt) == dt.replace(name, f"<wbr>{name}")
 
 
@@ -614,9 +614,9 @@ LETTERS = """() => [...document.querySelectorAll("article img")].map(image => ({
 }))"""
 """Which file of each picture is shown, and how wide."""
 SMALLEST = 7
-"""Points of the smallest letters of a figure; tests/studies/figures holds it."""
+"""Points of the smallest letters of a figure; tests/views/pictures holds it."""
 FILM = (5.4, 10)
-"""Inches of a film of two panels, and points of its letters (studies/export/film.py)."""
+"""Inches of a film of two panels, and points of its letters (views/film.py)."""
 
 
 def inches_and_points(file):

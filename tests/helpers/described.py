@@ -10,8 +10,8 @@ import re
 from IPython.core import pylabtools
 from PIL import Image
 
-from quietarm.studies.figures import stack
-from quietarm.studies.figures.axes import NARROW
+from quietarm.views.pictures import stack
+from quietarm.views.pictures.axes import NARROW
 
 _draw = pylabtools.print_figure
 

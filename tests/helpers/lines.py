@@ -14,7 +14,7 @@ COARSELY = [
     sys.executable,
     "-c",
     f"from quietarm.ocp.floor import energy_floor; energy_floor.FIRST_INTERVALS = {INTERVALS}\n"
-    "from quietarm.studies.report import progress; progress.PLAIN_SECONDS = 0.1\n"
+    "from quietarm.views.report import progress; progress.PLAIN_SECONDS = 0.1\n"
     "from quietarm.__main__ import main; main()",
 ]
 """The command as a process, which says where a search is without delay, and finds coarser

@@ -14,6 +14,7 @@ import pytest
 from saved_files import edit
 
 import quietarm as qa
+from quietarm.machine.identify import Identified
 from quietarm.metaheuristics import NamedProblem, archive
 from quietarm.metaheuristics.jobs import Job, finished_jobs
 from quietarm.metaheuristics.run_files import is_sealed
@@ -26,9 +27,8 @@ from quietarm.metaheuristics.score import (
     shares_of_box,
 )
 from quietarm.ocp import FileFormatError, Floor
+from quietarm.studies.answers.read_answers import load_front, load_plans
 from quietarm.studies.bench.results import Results
-from quietarm.studies.identify import Identified
-from quietarm.studies.reading.saved import load_front, load_plans
 from quietarm.studies.sweep import MoveLibrary
 
 FIXTURES = Path(__file__).parents[1] / "fixtures"

@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from quietarm.studies.figures import grammar, stack
-from quietarm.studies.figures.axes import NARROW, TITLE, broken_into_lines, head
-from quietarm.studies.figures.grammar import Look
+from quietarm.views.pictures import grammar, stack
+from quietarm.views.pictures.axes import NARROW, TITLE, broken_into_lines, head
+from quietarm.views.pictures.grammar import Look
 
 from .verdicts import verdicts
 from .words import RANDOM_STARTS, short_label, spelled_budget, two_digits, without_noise

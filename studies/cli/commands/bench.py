@@ -8,7 +8,6 @@ import click
 from rich.console import Console
 
 from quietarm.studies.cli.effort import refuse_endless
-from quietarm.studies.cli.files import check_folder
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     METHOD_SETTING,
@@ -24,6 +23,7 @@ from quietarm.studies.cli.options import (
     option,
     progress_console,
 )
+from quietarm.studies.cli.outputs import check_folder
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 
@@ -83,7 +83,8 @@ def bench(given: Given) -> None:
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
     from quietarm.metaheuristics.parallel import reach
     from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
-    from quietarm.studies.bench.page import reported_runs
+    from quietarm.studies.answers.read_answers import load_runs
+    from quietarm.studies.bench.bench_page import reported_runs
     from quietarm.studies.bench.planned_jobs import (
         imports_on,
         jobs_of,
@@ -94,8 +95,7 @@ def bench(given: Given) -> None:
     )
     from quietarm.studies.bench.results import Results, imported_runs
     from quietarm.studies.bench.statistics import say_power_of
-    from quietarm.studies.reading.saved import load_runs
-    from quietarm.studies.report.terminal import print_lines
+    from quietarm.views.report.terminal import print_lines
 
     methods = list(map(spell_method, given.methods))
     settings = read_settings((spell_method(name), text) for name, text in given.settings)
@@ -151,14 +151,14 @@ def bench(given: Given) -> None:
 
 def _report(results: Results, given: Given) -> None:
     """Write the report, unless one that is there has more, and show what is in short."""
-    from quietarm.studies.bench.page import (
+    from quietarm.studies.bench.bench_page import (
         bench_report,
         brief_report,
         not_reported_again,
         reported_runs,
     )
-    from quietarm.studies.report import show
-    from quietarm.studies.report.words import counted
+    from quietarm.views.report import show
+    from quietarm.views.report.words import counted
 
     lost = not_reported_again(results, reported_runs(given.output))
     files = [] if lost else bench_report(results, given.line).files(given.output)

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
-from quietarm.studies.cli.files import REPORT_OPTION, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
+from quietarm.studies.cli.outputs import REPORT_OPTION, finish
 from quietarm.studies.cli.plants import warn_of_notes
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
 from quietarm.studies.compare.judged_motions import SAMPLES
-from quietarm.studies.report import Report
-from quietarm.studies.report.terminal import print_lines
+from quietarm.views.report import Report
+from quietarm.views.report.terminal import print_lines
 
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan, Solver
@@ -77,9 +77,9 @@ def compare(given: Given) -> None:
 
 def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
     """Plans and baselines; `measured` errors are those that the plans are made for."""
+    from quietarm.studies.answers.read_answers import without_checksum
     from quietarm.studies.compare.judged_motions import merged_ranges
     from quietarm.studies.compare.plan_comparison import compare_plans, plans_report
-    from quietarm.studies.reading.saved import without_checksum
 
     ranges = once(given.errors, "--error ")
     if ranges.pop(MEASURED, None) is not None:
@@ -96,8 +96,8 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
+    from quietarm.studies.answers.read_answers import load_front, without_checksum
     from quietarm.studies.compare.front_report import compare_by_task, fronts_report
-    from quietarm.studies.reading.saved import load_front, without_checksum
     from quietarm.studies.reproduce.paper import paper_points
 
     reference = None if given.reference is None else load_front(given.reference)

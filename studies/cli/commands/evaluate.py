@@ -6,19 +6,12 @@ from pathlib import Path
 
 import click
 
+from quietarm.machine.tables.table import TABLES
 from quietarm.models import Robot
 from quietarm.ocp import evaluate_coefficients
+from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
-from quietarm.studies import figures
 from quietarm.studies.cli.commands.plan import Answer, finish_motion
-from quietarm.studies.cli.files import (
-    PAGE,
-    PICTURE,
-    answer_files,
-    check_page,
-    finish,
-    output_option,
-)
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -31,12 +24,19 @@ from quietarm.studies.cli.options import (
     option,
     profile_options,
 )
+from quietarm.studies.cli.outputs import (
+    PAGE,
+    PICTURE,
+    answer_files,
+    check_page,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
-from quietarm.studies.reading.profiles import families
-from quietarm.studies.reading.table import TABLES
-from quietarm.studies.report.front_rows import search_lines
-from quietarm.studies.report.moves import path_rows
+from quietarm.views import pictures
+from quietarm.views.report.front_rows import search_lines
+from quietarm.views.report.plan_rows import path_rows
 
 
 def _coefficients(text: str) -> list[float] | Path:
@@ -100,7 +100,7 @@ def _evaluate_coefficients(given: Given) -> None:
 
 def _evaluate_path(given: Given) -> None:
     """The figures of a recorded path."""
-    from quietarm.studies.reading.path import read_path
+    from quietarm.machine.recordings.recorded_path import read_path
 
     given.refuse(["start", "target", "duration"], "is in the file of --path")
     given.refuse_others({"path", *(param.name for param in TASK)}, "is not for a --path")
@@ -113,7 +113,7 @@ def _evaluate_path(given: Given) -> None:
 
 def _evaluate_table(given: Given) -> None:
     """A front of coefficients that another program found, beside what it states of them."""
-    from quietarm.studies.reading.importing import import_front
+    from quietarm.studies.answers.importing import import_front
 
     task = given.read_task()
     given.refuse(["sensitivities"], "is not for a table")
@@ -126,5 +126,5 @@ def _evaluate_table(given: Given) -> None:
     stated = given.pick("terms", "bound", "evaluations", "objectives")
     with busy("evaluating"):
         front, notes = import_front(given.coefficients, task, family, **stated)
-    files = answer_files(given.output, lambda: figures.front_figure([front]), front)
+    files = answer_files(given.output, lambda: pictures.front_figure([front]), front)
     finish(files, *search_lines([front], notes))

@@ -9,11 +9,13 @@ import click
 
 from quietarm.ocp import Plan
 from quietarm.ocp.files import check_writable, write_whole
-from quietarm.studies.cli.files import finish
+from quietarm.studies.answers.read_answers import load_fronts_and_plans, load_plans
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import busy, command, counting, option
+from quietarm.studies.cli.outputs import finish
 from quietarm.studies.cli.types import INPUT, SHARE, Named, Parsed
-from quietarm.studies.export.formats import (
+from quietarm.views.formats.between_rows import OF_POINTS, interpolation_note
+from quietarm.views.formats.formats import (
     COLUMNS,
     FORMATS,
     FRAMES,
@@ -21,16 +23,13 @@ from quietarm.studies.export.formats import (
     RATE,
     WIDTHS,
     content_of,
-    export_moves,
     export_plan,
     format_of,
 )
-from quietarm.studies.export.interpolation import OF_POINTS, interpolation_note
-from quietarm.studies.export.tables import columns_of
-from quietarm.studies.figures.motion import Line
-from quietarm.studies.reading.saved import load_fronts_and_plans, load_plans
-from quietarm.studies.report.saving import STDOUT, File
-from quietarm.studies.report.words import counted
+from quietarm.views.formats.move_tables import columns_of
+from quietarm.views.pictures.motion import Line
+from quietarm.views.report.saving import STDOUT, File
+from quietarm.views.report.words import counted
 
 _TO_STDOUT = [name for name, form in FORMATS.items() if form.to_stdout]
 
@@ -95,6 +94,8 @@ def export(given: Given) -> None:
     if len(plans) == 1 and plans[0].is_dir():
         if name != "c":
             raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
+        from quietarm.studies.sweep.library_in_c import export_moves
+
         written = export_moves(plans[0], output)
     elif form.is_film:
         notes = [_write_film(plans, output, settings)]
@@ -148,7 +149,7 @@ def _notes(plan: Plan, name: str, settings: dict[str, Any]) -> list[str]:
 
 def _write_film(plans: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:
     """Write a film of plans; how long and how large it is."""
-    from quietarm.studies.export.film import animate
+    from quietarm.views.film import animate
 
     lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
     film = animate(lines if len(lines) > 1 else lines[0].plan, **settings)
@@ -159,11 +160,12 @@ def _write_film(plans: tuple[Path, ...], output: Path, settings: dict[str, Any])
 
 def _write_page(answers: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:
     """Write a page of fronts and plans; how many motions it has, and how large it is."""
-    from quietarm.studies.export.tradeoff.page import trade_off
+    from quietarm.studies.reproduce.paper import paper_points
+    from quietarm.views.page.trade_off import trade_off
 
     loaded = load_fronts_and_plans(answers)
     with busy("sampling the motions"):
-        page = trade_off(loaded, **settings)
+        page = trade_off(loaded, known_points=paper_points, **settings)
     page.save(output)
     motions = counted(sum(len(move["points"]) for move in page.moves), "motion")
     return f"{motions}, {output.stat().st_size / 1e3:.0f} kB"

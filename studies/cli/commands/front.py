@@ -8,15 +8,7 @@ from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
-from quietarm.studies import figures
-from quietarm.studies.cli.files import (
-    PAGE,
-    PICTURE,
-    answer_files,
-    check_page,
-    finish,
-    output_option,
-)
+from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -34,10 +26,18 @@ from quietarm.studies.cli.options import (
     option,
     profile_options,
 )
+from quietarm.studies.cli.outputs import (
+    PAGE,
+    PICTURE,
+    answer_files,
+    check_page,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.quantities import parse_weights
 from quietarm.studies.cli.types import INPUT, Parsed
-from quietarm.studies.reading.saved import load_front
-from quietarm.studies.report.front_rows import failure_lines, gradient_lines, polish_lines
+from quietarm.views import pictures
+from quietarm.views.report.front_rows import failure_lines, gradient_lines, polish_lines
 
 _METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
 _SEARCHES = {
@@ -118,7 +118,7 @@ def front(given: Given) -> None:
         checked_points = 7
         with counting(checked_points, "checked points") as report:
             checked = cross_check(solution, checked_points=checked_points, report=report)
-    files = answer_files(given.output, lambda: figures.front_figure([solution]), solution)
+    files = answer_files(given.output, lambda: pictures.front_figure([solution]), solution)
     return finish(files, *gradient_lines(solution, points, checked))
 
 
@@ -133,6 +133,6 @@ def _polish(given: Given) -> None:
         polished = polish_front(before, solver=given.read_solver(), report=report)
     lines = polish_lines(before, polished.front, polished.gains)
     files = answer_files(
-        given.output, lambda: figures.polish_figure(before, polished), polished.front, [before]
+        given.output, lambda: pictures.polish_figure(before, polished), polished.front, [before]
     )
     finish(files, *lines)

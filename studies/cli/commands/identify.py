@@ -8,14 +8,21 @@ from pathlib import Path
 
 import click
 
+from quietarm.machine import Recording
+from quietarm.machine import identify as identification
+from quietarm.machine.identify.identified import is_modal
+from quietarm.machine.recordings.read_recording import (
+    Columns,
+    ReadRecording,
+    notes_in_words,
+    read_recording,
+)
 from quietarm.models import Plant
 from quietarm.models.joint_motion import joint_label
 from quietarm.ocp.checks import has_no
-from quietarm.studies import figures
-from quietarm.studies import identify as identification
-from quietarm.studies.cli.files import PICTURE, answer_files, ending_of, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
+from quietarm.studies.cli.outputs import PICTURE, answer_files, ending_of, finish, output_option
 from quietarm.studies.cli.plants import Kind, parse_plant
 from quietarm.studies.cli.quantities import (
     once,
@@ -25,15 +32,8 @@ from quietarm.studies.cli.quantities import (
     parse_units,
 )
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
-from quietarm.studies.identify import Recording
-from quietarm.studies.identify.machine import is_modal
-from quietarm.studies.reading.recording import (
-    Columns,
-    ReadRecording,
-    notes_in_words,
-    read_recording,
-)
-from quietarm.studies.report.machines import (
+from quietarm.views import pictures
+from quietarm.views.report.machine_rows import (
     machine_notes,
     machine_rows,
     nothing_predicted,
@@ -122,7 +122,7 @@ def identify(given: Given) -> None:
         refuse_defaults(plant, _others(plant, told | told_otherwise))
     files = answer_files(
         given.output,
-        lambda: figures.identification_figure(machine, recordings),
+        lambda: pictures.identification_figure(machine, recordings),
         machine,
     )
     return finish(

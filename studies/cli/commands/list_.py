@@ -7,15 +7,15 @@ import click
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS
 from quietarm.models import Robot, known_plants
 from quietarm.ocp import Front
-from quietarm.studies.cli.files import FOLDER, finish, output_option
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ENDS, ROBOT_PATH, command
+from quietarm.studies.cli.outputs import FOLDER, finish, output_option
 from quietarm.studies.cli.plants import OF_ROBOTS
-from quietarm.studies.cli.robots import path_of
-from quietarm.studies.report.catalogue import KINDS, catalogue_rows
-from quietarm.studies.report.robots import robot_rows, usual_path
-from quietarm.studies.report.saving import inside
-from quietarm.studies.report.words import counted
+from quietarm.studies.cli.robot_options import path_of
+from quietarm.views.report.catalogue_rows import KINDS, catalogue_rows
+from quietarm.views.report.robot_rows import robot_rows, usual_path
+from quietarm.views.report.saving import inside
+from quietarm.views.report.words import counted
 
 
 @command(

@@ -23,17 +23,9 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.planning.correct import refuse_correction
+from quietarm.ocp.planning.named_profiles import chooses_terms, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
-from quietarm.studies import figures
-from quietarm.studies.cli.files import (
-    PAGE,
-    PICTURE,
-    TRAJECTORY,
-    answer_files,
-    ending_of,
-    finish,
-    output_option,
-)
+from quietarm.ocp.task import OF_MOVES
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -50,11 +42,19 @@ from quietarm.studies.cli.options import (
     option,
     profile_options,
 )
-from quietarm.studies.cli.robots import line_note
+from quietarm.studies.cli.outputs import (
+    PAGE,
+    PICTURE,
+    TRAJECTORY,
+    answer_files,
+    ending_of,
+    finish,
+    output_option,
+)
+from quietarm.studies.cli.robot_options import line_note
 from quietarm.studies.cli.types import INPUT
-from quietarm.studies.reading.profiles import chooses_terms, families
-from quietarm.studies.report.moves import floor_rows, plan_rows, sensitivity_rows
-from quietarm.studies.sweep.grid import OF_MOVES
+from quietarm.views import pictures
+from quietarm.views.report.plan_rows import floor_rows, plan_rows, sensitivity_rows
 
 FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
@@ -215,10 +215,10 @@ def finish_motion(answer: Answer, output: Sequence[Path], *, sensitivities: bool
     shown = list[str | Sequence[tuple[str, str]]]()
     if isinstance(motion, Floor):
         shown.append(floor_rows(motion, answer.beside))
-        draw = partial(figures.floor_figure, motion, answer.beside)
+        draw = partial(pictures.floor_figure, motion, answer.beside)
     else:
         shown.append(plan_rows(motion))
-        draw = partial(figures.motion_figure, motion)
+        draw = partial(pictures.motion_figure, motion)
         if sensitivities:
             shown += ["\n", "what a parameter that is 1 % larger adds to residual and energy:"]
             shown.append(sensitivity_rows(motion))

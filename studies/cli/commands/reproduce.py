@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from quietarm.studies.cli.files import FOLDER, REPORT_OPTION, ending_of, finish
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import command, option, progress_console
+from quietarm.studies.cli.outputs import FOLDER, REPORT_OPTION, ending_of, finish
 from quietarm.studies.cli.quantities import parse_workers
 from quietarm.studies.cli.types import Parsed
 
@@ -30,9 +30,9 @@ def reproduce(given: Given) -> None:
     import joblib
 
     from quietarm.ocp.checks import whole
-    from quietarm.studies.report.progress import progress
+    from quietarm.studies.reproduce.paper_report import reproduction_report
     from quietarm.studies.reproduce.recompute import Effort, number_of_pieces, recompute_paper
-    from quietarm.studies.reproduce.report import reproduction_report
+    from quietarm.views.report.progress import progress
 
     of_readme = 9
     seeds = of_readme if given.full else 1

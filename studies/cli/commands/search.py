@@ -14,17 +14,8 @@ from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
-from quietarm.studies import figures
+from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.effort import refuse_endless
-from quietarm.studies.cli.files import (
-    PAGE,
-    PICTURE,
-    answer_files,
-    check_page,
-    ending_of,
-    finish,
-    output_option,
-)
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import (
@@ -43,12 +34,21 @@ from quietarm.studies.cli.options import (
     profile_options,
     progress_console,
 )
+from quietarm.studies.cli.outputs import (
+    PAGE,
+    PICTURE,
+    answer_files,
+    check_page,
+    ending_of,
+    finish,
+    output_option,
+)
 from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT
-from quietarm.studies.reading.saved import load_front
-from quietarm.studies.report.front_rows import search_lines
-from quietarm.studies.report.progress import search_display
-from quietarm.studies.report.saving import STDOUT, File
+from quietarm.views import pictures
+from quietarm.views.report.front_rows import search_lines
+from quietarm.views.report.progress import search_display
+from quietarm.views.report.saving import STDOUT, File
 
 _WHERE = {
     "epsilon": "front --method",
@@ -168,11 +168,11 @@ def _save_at_once(output: Sequence[Path], front: Front) -> None:
 
 def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> list[File]:
     """Every front as JSON and CSV, of several seeds with the seed in the name; one picture."""
-    pictures = [path for path in output if ending_of(path) == PICTURE]
-    tables = [path for path in output if path not in pictures]
-    draw = partial(figures.front_figure, fronts)
+    drawn = [path for path in output if ending_of(path) == PICTURE]
+    tables = [path for path in output if path not in drawn]
+    draw = partial(pictures.front_figure, fronts)
     files = list[File]()
     for front in fronts:
         seed = f"-seed{front.record.seed}" if several else ""
         files += answer_files([path.with_stem(path.stem + seed) for path in tables], draw, front)
-    return [*files, *answer_files(pictures, draw)]
+    return [*files, *answer_files(drawn, draw)]

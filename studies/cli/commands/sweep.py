@@ -6,14 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from quietarm.studies.cli.files import (
-    DATASET,
-    PICTURE,
-    answer_files,
-    ending_of,
-    finish,
-    output_option,
-)
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import (
@@ -29,6 +21,14 @@ from quietarm.studies.cli.options import (
     counting,
     option,
     profile_options,
+)
+from quietarm.studies.cli.outputs import (
+    DATASET,
+    PICTURE,
+    answer_files,
+    ending_of,
+    finish,
+    output_option,
 )
 from quietarm.studies.cli.types import SHARE
 
@@ -62,10 +62,10 @@ def sweep(given: Given) -> None:
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --output payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics.parallel import reach
-    from quietarm.studies.report.sweeps import cells_along, sweep_rows
     from quietarm.studies.sweep.definition import Definition, PlanSettings
     from quietarm.studies.sweep.run import run_sweep
     from quietarm.studies.sweep.store import Store
+    from quietarm.studies.sweep.sweep_rows import cells_along, sweep_rows
 
     grid = given.read_grid()
     if not grid.axes:
@@ -101,7 +101,7 @@ def sweep(given: Given) -> None:
         trouble = InterruptedCommandError(f"{words}; give the same line again to go on", stop)
 
     def picture() -> Figure:
-        from quietarm.studies.figures.grid import fronts_figure, grid_figure
+        from quietarm.studies.sweep.grid_figures import fronts_figure, grid_figure
 
         return fronts_figure(store) if given.front else grid_figure(store)
 

@@ -7,7 +7,7 @@ from two_links import BASE, ELBOW, INERTIAL, SHOULDER, URDF, robot_of, with_elbo
 
 import quietarm as qa
 from quietarm.models.robot.robot_file import limits_of
-from quietarm.studies.export.tables import table
+from quietarm.views.formats.move_tables import table
 
 MIMIC = with_elbow('<mimic joint="shoulder" multiplier="-2" offset="0.3"/>')
 SLIDER = f"""<link name="slide">{INERTIAL}</link><joint name="slider" type="prismatic">

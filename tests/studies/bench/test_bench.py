@@ -17,7 +17,7 @@ from quietarm.metaheuristics.objective.population import ACCURACY
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.metaheuristics.score import CORNER, INDICATORS
 from quietarm.ocp.cost import COST
-from quietarm.studies.bench.page import bench_report, compared_columns, problem_table
+from quietarm.studies.bench.bench_page import bench_report, compared_columns, problem_table
 from quietarm.studies.bench.planned_jobs import problems_of, write_references
 from quietarm.studies.bench.results import Results
 

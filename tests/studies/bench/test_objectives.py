@@ -14,7 +14,7 @@ from quietarm.studies.bench.planned_jobs import jobs_of, problems_of, with_refer
 from quietarm.studies.bench.results import Results
 from quietarm.studies.compare import compare_fronts
 from quietarm.studies.compare.front_report import fronts_report
-from quietarm.studies.figures import draw_parallel, draw_peak, front_figure
+from quietarm.views.pictures import draw_parallel, draw_peak, front_figure
 
 THREE = ("residual", "energy", "peak_torque")
 

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from quietarm.metaheuristics import Job, NamedProblem, problem_of, run_jobs
-from quietarm.studies.bench.page import bench_report
+from quietarm.studies.bench.bench_page import bench_report
 from quietarm.studies.bench.results import Results
 from quietarm.studies.bench.running_times import (
     History,

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from quietarm.metaheuristics import PROBLEMS, problem_of
-from quietarm.studies.bench.page import bench_report, problem_table
+from quietarm.studies.bench.bench_page import bench_report, problem_table
 from quietarm.studies.bench.results import Results, Run, quartiles
 from quietarm.studies.bench.statistics import (
     attainable_p,
@@ -188,7 +188,7 @@ from dataclasses import replace
 import quietarm as qa
 from quietarm.metaheuristics import problem_of
 from quietarm.studies.bench.results import Results, Run
-from quietarm.studies.bench.page import bench_report, brief_report
+from quietarm.studies.bench.bench_page import bench_report, brief_report
 
 problem, front = problem_of("single-link-30deg-0.8s-2-terms"), qa.Front.load(sys.argv[1])
 runs = [

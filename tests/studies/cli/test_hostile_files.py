@@ -9,8 +9,8 @@ import pytest
 from lines import MOVE
 from scipy.io import savemat
 
+from quietarm.machine.tables.table import read_table
 from quietarm.ocp import CycloidPolynomial, epsilon_front
-from quietarm.studies.reading.table import read_table
 
 DEEP = 100_000
 ROWS = "\n".join(f"{k},{k}" for k in range(9))
@@ -204,11 +204,11 @@ def test_a_reader_that_dies_is_no_end_of_the_command(folder, monkeypatch):
     (folder / "dead.mat").write_bytes(SOUND)
     dying = folder / "dying.py"
     dying.write_text("import os; os.abort()")
-    monkeypatch.setattr("quietarm.studies.reading.matlab._PROCESS", dying)
+    monkeypatch.setattr("quietarm.machine.tables.matlab._PROCESS", dying)
     with pytest.raises(ValueError, match=r"dead.mat: it is no whole .mat file .* status -6"):
         read_table(folder / "dead.mat")
     dying.write_text("import time; time.sleep(60)")
-    monkeypatch.setattr("quietarm.studies.reading.matlab.LONGEST_READ", 0.1)
+    monkeypatch.setattr("quietarm.machine.tables.matlab.LONGEST_READ", 0.1)
     with pytest.raises(ValueError, match=r"reading it takes more than 0.1 s"):
         read_table(folder / "dead.mat")
 

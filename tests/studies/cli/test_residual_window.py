@@ -15,7 +15,7 @@ from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint, evaluate_
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.start_page import open_file, open_plant
-from quietarm.studies.sweep.grid import Axis, MoveGrid
+from quietarm.studies.sweep.move_grid import Axis, MoveGrid
 
 CRANE = "linear-axis --set omega1=0.6283 --set zeta1=0.002 --target 8 --duration 16 --quiet"
 WITHIN = "within 20 s"  # two periods of 0.6283 rad/s

@@ -9,8 +9,8 @@ import pytest
 from saved_files import renew_checksum
 
 import quietarm as qa
+from quietarm.machine.identify import Identified
 from quietarm.ocp import FileFormatError, Floor
-from quietarm.studies.identify import Identified
 
 MARK = "QZ"
 LONG = MARK * 3000

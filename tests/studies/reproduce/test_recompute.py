@@ -16,8 +16,8 @@ from quietarm.studies.reproduce.paper import (
     condition_of,
     paper_points,
 )
+from quietarm.studies.reproduce.paper_report import TITLES, reproduction_report
 from quietarm.studies.reproduce.recompute import Effort, Reproduction, recompute_paper
-from quietarm.studies.reproduce.report import TITLES, reproduction_report
 from quietarm.studies.reproduce.searched import OLD_CONSTANTS
 
 pytestmark = pytest.mark.slow

@@ -20,7 +20,7 @@ from quietarm.ocp import (
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.studies.cli import main
-from quietarm.studies.sweep.interpolation import Interpolation
+from quietarm.studies.sweep.cell_interpolation import Interpolation
 from quietarm.studies.sweep.library import MoveLibrary, plan_from
 from quietarm.studies.sweep.run import sweep
 

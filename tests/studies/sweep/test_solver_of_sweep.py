@@ -4,9 +4,9 @@ import pytest
 
 import quietarm as qa
 from quietarm.ocp.saved import plain, typed
-from quietarm.studies.sweep.cells import plan_cells
 from quietarm.studies.sweep.definition import Definition, PlanSettings
-from quietarm.studies.sweep.grid import Axis, MoveGrid
+from quietarm.studies.sweep.grid_cells import plan_cells
+from quietarm.studies.sweep.move_grid import Axis, MoveGrid
 
 GRID = MoveGrid(
     qa.PointToPoint(qa.SingleLinkManipulator(), target=0.5, duration=0.8),

@@ -14,6 +14,12 @@ FRONT = "front arm-on-flexible-link --target 90deg --duration 0.8 --terms 3 --po
 FILM = "export plan.json --output m.gif --width 2000 --rate 50 --speed 20%"
 
 
+def skip_where_ignored(number):
+    """Nothing hears a signal that is ignored where these tests run, as after nohup."""
+    if signal.getsignal(number) is signal.SIG_IGN:
+        pytest.skip(f"{number.name} is ignored here")
+
+
 def begin(process, words):
     """Wait until a process says on standard error that it has begun."""
     while not re.match(words, process.stderr.readline()):
@@ -31,8 +37,7 @@ def begin(process, words):
     ],
 )
 def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line, words, number):
-    if signal.getsignal(number) is signal.SIG_IGN:
-        pytest.skip("ignored where these tests run, as after nohup")
+    skip_where_ignored(number)
     plan.save("plan.json")
     process = at_a_terminal(line)
     begin(process, words)
@@ -67,6 +72,7 @@ main()
     ],
 )
 def test_a_signal_during_an_import_is_answered(folder, plan, line, module, number):
+    skip_where_ignored(number)
     plan.save("plan.json")
     script = PRESSED_AT_IMPORT.format(module=module, number=int(number))
     ended = subprocess.run(

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from saved_files import edit, make_earlier
 
-import quietarm.studies.reading.saved
+from quietarm.studies.answers import read_answers
 
 OLD_PLAN = Path(__file__).parents[4] / "fixtures" / "2026-11-27" / "plan.json"
 """Of a version that knew no checksum."""
@@ -19,7 +19,7 @@ OLD_PLAN = Path(__file__).parents[4] / "fixtures" / "2026-11-27" / "plan.json"
 def files(good, poor, folder, monkeypatch):
     """Two invented fronts, in the folder of the test; nothing can be evaluated between points."""
     monkeypatch.setenv("COLUMNS", "200")
-    monkeypatch.setattr(quietarm.studies.reading.saved, "check_figures", lambda front, name: None)
+    monkeypatch.setattr(read_answers, "check_figures", lambda front, name: None)
     good.save("good.json")
     poor.save("poor.json")
     return folder

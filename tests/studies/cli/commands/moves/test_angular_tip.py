@@ -10,7 +10,7 @@ import xarray as xr
 from quietarm.models import load_plant_file
 from quietarm.ocp import Front, Plan
 from quietarm.studies.compare import compare_plans
-from quietarm.studies.figures import draw_motions, front_figure
+from quietarm.views.pictures import draw_motions, front_figure
 
 pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 

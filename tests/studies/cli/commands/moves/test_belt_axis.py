@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
+from quietarm.machine.identify import Identified
 from quietarm.ocp import Plan
-from quietarm.studies.identify import Identified
 
 pytestmark = pytest.mark.slow
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
+from quietarm.machine.identify import Identified
 from quietarm.ocp import Plan
-from quietarm.studies.identify import Identified
 
 TIME = np.arange(0, 6, 0.005)
 OMEGA, ZETA = 2 * math.pi * 3.2, 0.01

@@ -1,0 +1,9 @@
+"""Between a machine and its model: its recordings, and the plant that they tell of.
+
+Rooms: `tables` reads files of numbers as other programs write them, `recordings` are what was
+measured, mended, and `identify` finds a plant's parameters from them.
+"""
+
+from quietarm.loading import attach
+
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

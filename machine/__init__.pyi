@@ -1,0 +1,2 @@
+from . import identify as identify
+from .recordings.recording import Recording as Recording

@@ -1,0 +1,139 @@
+"""A robot as the plant of a command: its path, and the limits of its joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from quietarm.models import GeometricPath, Robot, RobotOnPath
+from quietarm.models.robot.cartesian import kinematics_of, off_straight
+from quietarm.models.robot.urdf import PRISMATIC
+from quietarm.models.units import parse_quantity
+from quietarm.ocp import PointToPoint, Uncertainty
+from quietarm.ocp.checks import listed
+from quietarm.ocp.limits import QUANTITIES
+from quietarm.studies.cli.quantities import once
+from quietarm.views.report.words import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from quietarm.studies.cli.given import Given
+
+LINE_NAMES = ("line_to", "line_by", "link")
+"""Options of a straight line in space."""
+OF_ROBOT = "is for a robot, whose file is PLANT, as ur5.yaml"
+_OTHERS = ("residual_window", "initial", "final", "energy")
+
+
+def read_robot_task(
+    given: Given, robot: Robot, duration: float, multiples: Mapping[str, Sequence[float]]
+) -> PointToPoint:
+    """The task of a robot along the path that was typed, within its own limits and those typed.
+
+    Of several multiples of its payload, or stiffness, the least counts: the others are an axis.
+    """
+    path = path_of(given, robot)
+    if path is None:
+        names = listed(robot.joints)
+        raise ValueError(
+            f"the robot has no path; give --start and --target, a position of each of {names}, or "
+            "--path waypoints.csv, or --start and --line-by"
+        )
+    plant = replace(robot.along(path), **{name: min(values) for name, values in multiples.items()})
+    limits: dict[str, Any] = {
+        QUANTITIES[name].limit: dict(bounds) for name, bounds in robot.limits.items() if bounds
+    }
+    for quantity in QUANTITIES.values():
+        typed = given.read_of_plant(quantity.limit, plant)
+        if typed is not None:
+            limits[quantity.limit] = typed
+    limits["torque_speed"] = given.read_of_plant("torque_speed", plant)
+    ranges = once(given.errors, "--error ")
+    return PointToPoint(
+        plant,
+        target=1.0,
+        duration=duration,
+        **limits,
+        **given.pick(*_OTHERS),
+        uncertainty=Uncertainty(ranges) if ranges else None,
+    )
+
+
+def path_of(given: Given, robot: Robot) -> GeometricPath | None:
+    """Through the points of --path, or from --start straight in the joints or in space.
+
+    None without any.
+    """
+    if given.path is not None:
+        given.refuse(["start", "target", *LINE_NAMES], "is in the file of --path")
+        return GeometricPath.load(given.path)
+    if given.line_to is not None or given.line_by is not None:
+        return _line_in_space(given, robot)
+    given.refuse(["link"], "is for --line-to and --line-by")
+    if not (given.typed("start") and given.typed("target")):
+        return None
+    ends = [_positions(given.start, "--start", robot), _positions(given.target, "--target", robot)]
+    return GeometricPath.line(*ends, joints=robot.joints)
+
+
+def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
+    """By inverse kinematics from --start to --line-to, or by --line-by."""
+    given.refuse(["target"], "is where joints go; a line ends at --line-to or by --line-by")
+    if given.line_to is not None:
+        given.refuse(["line_by"], "is in place of --line-to")
+    if not given.typed("start"):
+        raise ValueError(
+            f"a line begins somewhere; give --start, a position of each of {listed(robot.joints)}"
+        )
+    return GeometricPath.cartesian_line(
+        robot,
+        _positions(given.start, "--start", robot),
+        to=_numbers(given.line_to, "--line-to", (3, 6), "x,y,z or x,y,z,roll,pitch,yaw"),
+        by=_numbers(given.line_by, "--line-by", (3,), "x,y,z"),
+        link=given.link,
+    )
+
+
+def line_note(given: Given, plant: RobotOnPath) -> str | None:
+    """How straight the link goes for which a line was typed."""
+    if given.line_to is None and given.line_by is None:
+        return None
+    kinematics = kinematics_of(plant.robot, given.link)
+    off = off_straight(kinematics, plant.path)
+    return f"line: {kinematics.link} goes straight within {max(1e3 * off, 1e-9):.1g} mm"
+
+
+def _numbers(
+    text: str | None, option: str, counts: tuple[int, ...], wanted: str
+) -> list[float] | None:
+    """A place and angles: ``400mm,200mm,0.5,0,pi,0``."""
+    if text is None:
+        return None
+    units = ["m"] * 3 + ["rad"] * 3
+    words = text.split(",")
+    if len(words) not in counts:
+        raise ValueError(f"{option} has {len(words)} numbers; give {wanted}")
+    return [parse_quantity(word, unit, f"a number of {option}") for word, unit in zip(words, units)]
+
+
+def _following_words(robot: Robot) -> str:
+    """Which joints have no position of their own."""
+    names = [f"{name} follows {entry.leader}" for name, entry in robot.followers.items()]
+    return f" ({', '.join(names)})" if names else ""
+
+
+def _positions(text: str, option: str, robot: Robot) -> list[float]:
+    """A position of every joint: ``0,-80deg,97deg``."""
+    words = text.split(",")
+    if len(words) != len(robot.joints):
+        raise ValueError(
+            f"{option} has {len(words)} positions, and the robot drives "
+            f"{counted(len(robot.joints), 'joint')}, {listed(robot.joints)}"
+            f"{_following_words(robot)}; give one of each"
+        )
+    slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]
+    return [
+        parse_quantity(word, "m" if slide else "rad", f"a position of {name} in {option}")
+        for word, slide, name in zip(words, slides, robot.joints)
+    ]

@@ -1,0 +1,1 @@
+"""Moves in the forms that controllers and other programs read."""

@@ -1,0 +1,101 @@
+"""Moves as C without dependencies: a plan, or the table of a sweep with its interpolation."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import casadi as ca
+import numpy as np
+
+from quietarm.models import Plant
+from quietarm.models.joint_motion import JointMotion, joint_unit
+from quietarm.ocp import Plan
+from quietarm.ocp.escapes import c_comment, c_string
+from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.task import OF_MOVES
+from quietarm.views.report.templates import templates
+from quietarm.views.report.words import limit_words, move_of, moved, window_words
+from quietarm.views.tips import tip_words
+
+if TYPE_CHECKING:
+    from quietarm.studies.sweep.library import MoveLibrary
+
+_HELPER = re.compile(r"^double casadi_\w+\([^)]*\) \{.*?\}$", re.M | re.S)
+_STATEMENTS = re.compile(r"^static int casadi_f0\([^)]*\) \{\n(.*?)\n  return 0;", re.M | re.S)
+"""What CasADi's generator writes: small functions, and the body of the first function."""
+
+
+def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
+    """Header and source whose functions are called after a file's name."""
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ValueError(
+            f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
+            "of letters, digits and _ that begins with a letter"
+        )
+    if isinstance(moves, Plan):
+        task = moves.task
+        versions = moves.record.versions
+        between = None
+        axes = ()
+        title = f"{moved(task)}, {move_of(task)}"
+        residual = tip_words(moves.residual, task.plant.tip_unit)
+        figures = f"energy {moves.energy:.4g} J, residual {residual} "
+        figures += window_words(task.residual_window)
+        figures = ", ".join([figures, *limit_words(task)])
+    else:
+        task = moves.grid.task
+        versions = moves.store.note("versions")
+        between = moves.interpolation
+        axes = moves.grid.axes
+        title = f"moves of {moved(task)}"
+        figures = moves.between().words
+        figures += f", residuals {window_words(task.residual_window)}"
+    move = dict(zip(OF_MOVES, map(repr, task.move)))
+    plant = task.plant
+    names = plant.joint_names if plant.has_path else ()
+    helpers, statements = _path_in_c(moves.profile, plant)
+    ends = [_positions(plant, place) for place in (task.start, task.target)] if names else []
+    texts = templates(keep_trailing_newline=True)
+    texts.filters |= {"row": _row, "string": c_string, "comment": c_comment}
+    header, source = (
+        texts.get_template(f"views/formats/templates/move.{kind}").render(
+            name=name, upper=name.upper(), size=moves.profile.size, title=title,
+            figures=figures[0].upper() + figures[1:], version=versions.get("quietarm", ""),
+            unit=joint_unit("rad", task.plant.joint), axes=axes, between=between,
+            most=between and between.most_cells,
+            move=move | {axis.name: axis.name for axis in axes if axis.name in move},
+            coefficients=() if between else moves.coefficients, helpers=helpers,
+            statements=statements, no_plan=np.nan_to_num, joints=names, ends=ends,
+        )
+        for kind in "hc"
+    )  # fmt: skip
+    return header, source
+
+
+def _path_in_c(profile: JointProfile, plant: Plant) -> tuple[list[str], str]:
+    """Functions that are called, and the statements of the joints' path, by CasADi's generator."""
+    fraction = ca.SX.sym("t")
+    a = ca.SX.sym("a", profile.size)
+    move = ca.SX.sym("move", 3)
+    path = profile.motion(ca.vertsplit(a), fraction, *ca.vertsplit(move), jerk=False)
+    motions = plant.joints(path)
+    orders = zip(*((joint.angle, joint.speed, joint.acceleration) for joint in motions))
+    results = ca.densify(ca.vertcat(*(value for order in orders for value in order)))
+    generator = ca.CodeGenerator("path", {"with_export": False})
+    generator.add(ca.Function("path", [fraction, a, move], [results], {"cse": True}))
+    text = generator.dump().replace("casadi_real", "double")
+    match = _STATEMENTS.search(text)
+    assert match is not None
+    return _HELPER.findall(text), match[1]
+
+
+def _positions(plant: Plant, place: float) -> list[float]:
+    """Where the joints rest at a place of the path."""
+    return [float(joint.angle) for joint in plant.joints(JointMotion(place, 0.0, 0.0))]
+
+
+def _row(values: Iterable[float]) -> str:
+    """Constants of C with every digit."""
+    return ", ".join(repr(float(value)) for value in values)

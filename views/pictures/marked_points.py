@@ -1,0 +1,43 @@
+"""The points of a front that are named in a picture: its ends, its knee and 1 mm."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
+from quietarm.ocp.front.points import knee_of
+from quietarm.ocp.record import REST
+from quietarm.views.pictures.grammar import INK
+from quietarm.views.tips import tip_scale, tip_words
+
+Array = NDArray[np.float64]
+
+
+def mark_points(ax: Axes, front: Array, tip_unit: str) -> None:
+    """Mark and name points of a front, shape (n, 2): residuals [tip's unit], rising, energies [J].
+
+    The stillest, the cheapest, the knee, and what 1 mm allows, each with its figures in the legend.
+    """
+    if not len(front):
+        return
+    named = {"stillest": ("<", front[0])}
+    if len(front) > 1:
+        named["cheapest"] = (">", front[-1])
+    if len(front) > 2:
+        named["knee"] = ("o", front[knee_of(front)])
+    if front[0, 0] < SEARCH_RESIDUAL < front[-1, 0]:
+        energy = float(np.interp(SEARCH_RESIDUAL, front[:, 0], front[:, 1]))
+        named[tip_words(SEARCH_RESIDUAL, tip_unit)] = ("|", np.array([SEARCH_RESIDUAL, energy]))
+    scale = tip_scale(tip_unit)[1]
+    for name, (mark, (residual, energy)) in named.items():
+        label = f"{name}: {energy:.4g} J{_place(name, residual, tip_unit)}"
+        ax.plot(scale * max(residual, REST), energy, mark, color=INK, fillstyle="none",
+                markersize=8, zorder=4, label=label)  # fmt: skip
+
+
+def _place(name: str, residual: float, tip_unit: str) -> str:
+    """Where a named point is, unless its name says so."""
+    words = "rest" if residual < REST else tip_words(residual, tip_unit)
+    return "" if name == words else f" at {words}"

@@ -1,0 +1,151 @@
+"""Sentences above pictures: what is seen, in the figures of the answer that is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
+from quietarm.ocp import Floor, Front, Plan, Polish
+from quietarm.ocp.record import REST
+from quietarm.views.report.words import error_words
+from quietarm.views.tips import tip_words
+
+if TYPE_CHECKING:
+    from quietarm.studies.compare.judged_motions import JudgedMotion
+
+_MOST_SAID = 3
+"""Of more motions a sentence says only between which figures they are."""
+
+
+def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
+    """What motions take and leave, by their names: "The plan takes 0.02 J and arrives at rest"."""
+    said = {name: (motion.energy, _ending(motion)) for name, motion in motions.items()}
+    residuals = [motion.residual for motion in motions.values()]
+    unit = next(iter(motions.values())).task.plant.tip_unit
+    return _caption(said, max(residuals), unit)
+
+
+def caption_of_judged(motions: Sequence[JudgedMotion], tip_unit: str) -> str:
+    """The same of motions that are compared; of an uncertain plant by their worst cases."""
+    known = {judged.name: judged for judged in motions if judged.motion is not None}
+    said = dict[str, tuple[float, str]]()
+    residuals = [0.0]
+    for name, judged in known.items():
+        assert judged.motion is not None
+        residuals.append(judged.motion.residual)
+        words = _left(judged.motion.residual, tip_unit)
+        if judged.worst is not None:
+            residuals.append(judged.worst.residual)
+            words = f"{_left(judged.worst.residual, tip_unit)} in the worst case"
+        said[name] = judged.motion.energy, words
+    return _caption(said, max(residuals), tip_unit)
+
+
+def _caption(said: Mapping[str, tuple[float, str]], most_left: float, tip_unit: str) -> str:
+    if not said:
+        return "None of these motions is possible"
+    if len(said) > _MOST_SAID:
+        energies = [energy for energy, _ in said.values()]
+        return (
+            f"{len(said)} motions take {min(energies):.3g} to {max(energies):.3g} J; after arrival "
+            f"the tip swings by up to {tip_words(most_left, tip_unit)}"
+        )
+    sentences = [
+        f"{_named(name)} takes {energy:.3g} J and {words}" for name, (energy, words) in said.items()
+    ]
+    caption = "; ".join(reversed(sentences))
+    return caption[:1].upper() + caption[1:]
+
+
+def _named(name: str) -> str:
+    """A name within a sentence: the plain cycloid."""
+    articled = ("plain cycloid", "cycloid", "plan", "robust plan", "floor")
+    return f"the {name}" if name in articled or name.startswith("plan of") else name
+
+
+def _ending(motion: Plan | Floor) -> str:
+    """How a motion ends: at rest, or what it leaves, of a robust plan in the worst case."""
+    task = motion.task
+    if isinstance(motion, Plan) and motion.worst is not None:
+        worst = _left(motion.worst.residual, task.plant.tip_unit)
+        return f"{worst} with {error_words(task)}"
+    if motion.residual < REST and task.final:
+        return "arrives in the state that is wanted"
+    return _left(motion.residual, task.plant.tip_unit)
+
+
+def _left(residual: float, tip_unit: str) -> str:
+    return "arrives at rest" if residual < REST else f"leaves {tip_words(residual, tip_unit)}"
+
+
+def verified_words(motions: Sequence[Plan | Floor]) -> str:
+    """How the figures of a picture are verified: by how much another integrator differs."""
+    checks = [motion.verification for motion in motions if isinstance(motion, Plan)]
+    if not checks:
+        return "by CVODES"
+    share = max(check.energy_share for check in checks)
+    if all(check.agrees for check in checks):
+        return f"verified by CVODES, within {share:.0e} of the energy"
+    return f"not verified: CVODES differs by {share:.0e} of the energy"
+
+
+def caption_of_front(front: Front) -> str:
+    """What a front trades: from its stillest to its cheapest motion."""
+    tip_unit = front.task.plant.tip_unit
+    if not front.points:
+        return "No point of this front was found"
+    stillest = front.points[0]
+    cheapest = front.points[-1]
+    still = "at rest" if stillest.residual < REST else tip_words(stillest.residual, tip_unit)
+    words = f"{stillest.energy:.3g} J {still}"
+    if len(front.points) == 1:
+        return f"One motion: {words}"
+    saved = 100 * (1 - cheapest.energy / stillest.energy)
+    return (
+        f"From {words} to {cheapest.energy:.3g} J with {tip_words(cheapest.residual, tip_unit)}: "
+        f"this vibration saves {saved:.3g} % of the energy"
+    )
+
+
+def caption_of_fronts(fronts: Sequence[Front], level: float = SEARCH_RESIDUAL) -> str:
+    """What seeds of one method take within a residual [m]."""
+    if len(fronts) == 1:
+        return caption_of_front(fronts[0])
+    within = tip_words(level, fronts[0].task.plant.tip_unit)
+    energies = [front.least_energy(level) for front in fronts]
+    reached = [energy for energy in energies if energy < float("inf")]
+    if not reached:
+        return f"None of {len(fronts)} seeds comes within {within}"
+    return (
+        f"Within {within}, {len(reached)} of {len(fronts)} seeds take {min(reached):.4g} to "
+        f"{max(reached):.4g} J"
+    )
+
+
+def caption_of_polish(polish: Polish) -> str:
+    """What polishing saves."""
+    shares = [100 * gain.share for gain in polish.gains]
+    if not shares:
+        return "No point was polished"
+    return f"Polishing saves up to {max(shares):.2g} % of the energy of a point"
+
+
+def caption_of_cells(
+    energies: NDArray[np.float64], residuals: NDArray[np.float64], tip_unit: str
+) -> str:
+    """How many cells of a grid have a plan, what these take, and what they leave."""
+    planned = np.isfinite(energies)
+    words = f"{planned.sum()} of {planned.size} moves have a plan"
+    if not planned.any():
+        return words
+    low = energies[planned].min()
+    high = energies[planned].max()
+    left = residuals[planned].max()
+    words = f"{words}, of {low:.3g} to {high:.3g} J"
+    if left < REST:
+        return f"{words}; all arrive at rest"
+    return f"{words}; they leave up to {tip_words(float(left), tip_unit)}"

@@ -1,0 +1,107 @@
+"""What there is to choose from in rows: plants, problems and methods, and each by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, fields
+from typing import Any
+
+from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.problems.card import card_of
+from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
+from quietarm.models import Plant
+from quietarm.ocp.checks import spelling, unknown
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.objectives import ENERGY, OBJECTIVES
+from quietarm.views.report.methods import GRADIENT_LABELS, label_of
+from quietarm.views.report.words import error_words, objective_words, window_words
+
+Row = tuple[str, str]
+KINDS = ("plants", "problems", "methods", "objectives")
+
+
+def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
+    """A title, and rows of one of `KINDS` or of an entry by its name; ValueError of no other."""
+    known = [*KINDS, *plants, *PROBLEMS, *GRADIENT_LABELS, *PRESETS]
+    spelt = {spelling(name): name for name in known}
+    if spelling(name) not in spelt:
+        raise ValueError(unknown("name", name, known))
+    name = spelt[spelling(name)]
+    if name == "plants":
+        rows = [(plant, (kind.__doc__ or "").partition("\n")[0]) for plant, kind in plants.items()]
+        return "plants, with `quietarm list NAME` for the parameters", rows
+    if name == "problems":
+        rows = [(label, _problem(problem)) for label, problem in PROBLEMS.items()]
+        return "problems, each with a reference front", rows
+    if name == "methods":
+        rows = [(method, label_of(method)) for method in (*GRADIENT_LABELS, *PRESETS)]
+        return "methods, with `quietarm list NAME` for the settings", rows
+    if name == "objectives":
+        rows = [(objective_words([objective]), _objective(objective)) for objective in OBJECTIVES]
+        return "objectives, for --objectives of search, front and bench", rows
+    if name in plants:
+        rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
+        return f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows
+    if name in PROBLEMS:
+        return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
+    if name not in PRESETS:
+        command = "bench" if name == "multistart" else "front"
+        words = f"{label_of(name)}, by the gradient; its options: quietarm {command} --help"
+        return name, [("method", words)]
+    preset = PRESETS[name]
+    settings = [
+        (
+            setting.name,
+            f"{'-' if setting.default is None else setting.default}: {setting.meaning}",
+        )
+        for setting in preset.settings
+    ]
+    size = ("population, generations", f"{preset.population}, {preset.generations}")
+    return f"{name}: {preset.label}, {preset.source}", [size, *settings]
+
+
+def _objective(name: str) -> str:
+    """What an objective is."""
+    quantity = OBJECTIVES[name]
+    if quantity is not None:
+        return f"the largest {quantity.label} during the move [{quantity.unit}]"
+    unit = {RESIDUAL: "m", ENERGY: "J"}[name]
+    words = {RESIDUAL: "F1, the largest tip displacement after arrival", ENERGY: "F2, of the drive"}
+    return f"{words[name]} [{unit}], of every front"
+
+
+def _parameter(entry: Field[Any]) -> str:
+    """A parameter's value, meaning and source."""
+    words = "no default" if entry.default is MISSING else f"{entry.default:.5g}"
+    for key, form in {"unit": " {}", "meaning": ": {}", "source": "  ({})"}.items():
+        if entry.metadata.get(key, "-") not in ("", "-"):
+            words += form.format(entry.metadata[key])
+    return words
+
+
+def _card(problem: NamedProblem) -> list[Row]:
+    """What the reference front says of a problem of two objectives."""
+    if len(problem.objectives) > 2:  # a card is of a curve
+        return []
+    card = card_of(problem.fronts()[0])
+    ranges = (f"{1e3 * begin:.3g} to {1e3 * end:.3g} mm" for begin, end in card.nonconvex)
+    where = f": {', '.join(ranges)}" if card.nonconvex else ""
+    active = ", ".join(f"a_{i}" for i in card.active) or "none"
+    return [
+        ("not convex over", f"{card.nonconvex_share:.0%} of the residuals{where}"),
+        ("at the bound", active),
+        ("slope at its end", f"{card.still_falls:.2g} of the mean slope"),
+    ]
+
+
+def _problem(problem: NamedProblem) -> str:
+    """The box of a problem, and what it has beyond two objectives."""
+    errors = error_words(problem.task)
+    limits = ", ".join(map(str, problem.task.limits))
+    return ", ".join([
+        f"{problem.profile.size} coefficients from {-problem.bound:g} to {problem.bound:g}",
+        *([f"limits {limits}"] if limits else []),
+        *([f"objectives {objective_words(problem.objectives)}"] * (len(problem.objectives) > 2)),
+        *([f"the largest residual with {errors}"] if errors else []),
+        f"residuals {window_words(problem.task.residual_window)}",
+    ])  # fmt: skip

@@ -1,0 +1,216 @@
+"""Fronts in lines: how each was found, its ends and knee, what is missing, the spread of seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+
+import numpy as np
+
+from quietarm.metaheuristics.objective.noise import belief_of
+from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
+from quietarm.ocp import Candidate, CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
+from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.objectives import Objective, objectives_on
+from quietarm.ocp.robustness import worst_of
+from quietarm.views.report.plan_rows import worst_in_words
+from quietarm.views.report.words import (
+    counted,
+    energy_words,
+    residual_place,
+    residual_words,
+    spread_words,
+    values_words,
+)
+from quietarm.views.tips import tip_words
+
+
+def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> list[str]:
+    """A front by the gradient, of which so many points were asked for."""
+    levels = {level: front.least_energy(level) for level in LEVELS}
+    record = front.record
+    tip_unit = front.task.plant.tip_unit
+    return [
+        *energy_words(front.task),
+        f"{record.method}: {counted(len(front.points), 'point')}, "
+        f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
+        *_chosen_points(front),
+        *(
+            f"  {f'within {tip_words(level, tip_unit)}':14} "
+            f"{f'{energy:.4g} J' if isfinite(energy) else 'none'}"
+            for level, energy in levels.items()
+        ),
+        _residual_line(front.task)
+        + "; between them more may remain, as quietarm plan says" * bool(front.task.ranges),
+        *([] if check is None else [_check_line(check)]),
+        *_grid_lines(front),
+        *failure_lines(front, asked_for),
+        *(
+            f"no weight reaches residuals from {residual_words(begin, tip_unit)} to "
+            f"{tip_words(end, tip_unit)}: the front is not convex there"
+            for begin, end in front.gaps
+        ),
+    ]  # fmt: skip
+
+
+def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str]:
+    """Fronts of searches or tables, and the spread over several seeds."""
+    lines = energy_words(fronts[0].task)
+    tip_unit = fronts[0].task.plant.tip_unit
+    for front in fronts:
+        record = front.record
+        seed = "" if record.seed is None else f", seed {record.seed}"
+        lines += [
+            f"{record.method}{seed}: {counted(len(front.points), 'point')}, "
+            f"{counted(record.evaluations, 'candidate')} in {record.seconds:.1f} s, "
+            f"{front.failed} failed",
+            *_chosen_points(front),
+            *_noise_lines(front),
+        ]
+    lines.append(_residual_line(fronts[0].task))
+    if len(fronts) > 1:
+        energies = energies_at(fronts)
+        level = tip_words(SEARCH_RESIDUAL, tip_unit)
+        corner = values_words(
+            objectives_on(fronts[0].task.plant, fronts[0].objectives), fronts[0].reference
+        )
+        lines += [
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to {corner}, "
+            "median (quartiles)",
+            f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
+            f"{energies.count} of {energies.seeds} seeds reach {level}",
+        ]
+    return [*lines, *notes]
+
+
+def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[str]:
+    """What the points of a front gained by the gradient."""
+    # points that the list of gains shows
+    rows = 10
+    shares = np.array([gain.share for gain in gains])
+    tip_unit = given.task.plant.tip_unit
+    dominated = len(given.points) - len(polished.points)
+    shown = np.linspace(0, len(gains) - 1, min(rows, len(gains))).round().astype(int)
+    return [
+        f"{polished.record.method}: {counted(len(given.points), 'point')}, "
+        f"{polished.record.iterations - given.record.iterations} iterations of the solver in "
+        f"{polished.record.seconds - given.record.seconds:.1f} s",
+        f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
+        *(
+            f"{tip_words(gain.residual, tip_unit):>12}{f'{gain.before:.4g} J':>12}"
+            f"{f'{gain.after:.4g} J':>12}{f'{gain.share:.2%}':>9}"
+            for gain in (gains[i] for i in shown)
+        ),
+        _residual_line(polished.task),
+        f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
+        *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
+        *failure_lines(polished, len(given.points)),
+    ]  # fmt: skip
+
+
+def failure_lines(front: Front, asked_for: int) -> list[str]:
+    """How many of the points asked for failed, and why; none where none did."""
+    if not front.failures:
+        return []
+    reasons = dict[str, list[str]]()
+    tip_unit = front.task.plant.tip_unit
+    for failure in front.failures:
+        reasons.setdefault(failure.reason, []).append(_asked(failure, tip_unit))
+    return [
+        f"{len(front.failures)} of {asked_for} points could not be found:",
+        *(f"  {', '.join(points)}: {reason}" for reason, points in reasons.items()),
+    ]
+
+
+def _residual_line(task: PointToPoint) -> str:
+    """Where and when the residuals of fronts are measured."""
+    return f"residuals are {residual_place(task)}"
+
+
+def _chosen_points(front: Front) -> list[str]:
+    """The ends and the knee, a line each; of two points none is a knee."""
+    if not front.points:
+        return []
+    chosen = {"least residual": front.smallest_residual(), "knee": front.knee(),
+              "least energy": front.cheapest()}  # fmt: skip
+    for objective in _peaks_of(front):
+        quantity = objective.quantity
+        least = min(front.points, key=lambda point, name=quantity: point.peaks[name])
+        chosen[f"least {quantity}"] = least
+    if len(front.points) < 3:
+        del chosen["knee"]
+    width = max(15, *(len(name) + 1 for name in chosen))
+    return [f"  {name:{width}}{_point_in_words(front, point)}" for name, point in chosen.items()]
+
+
+def _peaks_of(front: Front) -> list[Objective]:
+    """The peaks that are objectives of a front."""
+    objectives = objectives_on(front.task.plant, front.objectives)
+    return [objective for objective in objectives if objective.quantity]
+
+
+def _grid_lines(front: Front) -> list[str]:
+    """What became of the cells of a grid of limits; nothing where there was none."""
+    settings = front.record.settings
+    if "grid" not in settings:
+        return []
+    return [
+        f"grid of {settings['grid']} limits on the residual and the peaks: "
+        f"{settings['infeasible_cells']} cells have no motion, and {settings['cells_left_out']} "
+        "were not solved, as their neighbours tell"
+    ]
+
+
+def _noise_lines(front: Front) -> list[str]:
+    """What the search believed, and what is true; nothing without noise."""
+    noise = front.record.settings.get("noise")
+    if not isinstance(noise, float):
+        return []
+    times = front.record.settings["reevaluate"]
+    again = f", {times} evaluations of what is kept" if times != 1 else ""
+    belief = belief_of(front)
+    if belief is None:
+        return [f"noise {noise:.3g} of residual and energy{again}"]
+    return [
+        f"noise {noise:.3g} of residual and energy{again}: at {counted(belief.points, 'point')} "
+        f"that it took for the best it believed energies {belief.energy:+.2%} and residuals "
+        f"{belief.residual:+.2%} of their size (medians); {belief.dominated} are dominated in truth"
+    ]
+
+
+def _point_in_words(front: Front, point: FrontPoint) -> str:
+    """Energy and residual; of an uncertain plant also the worst case."""
+    tip_unit = front.task.plant.tip_unit
+    words = f"{point.energy:.4g} J at {residual_words(point.residual, tip_unit)}"
+    words += "".join(
+        f", {objective.quantity} {tip_words(point.peaks[objective.quantity], objective.unit)}"
+        for objective in _peaks_of(front)
+    )
+    worst = worst_of(Candidate.of_profile(front.task, front.profile, point.coefficients))
+    return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
+
+
+def _check_line(check: CrossCheck) -> str:
+    """By how much the other solver's energies differ."""
+    shares = [point.difference for point in check.points if isfinite(point.other)]
+    missing = len(check.points) - len(shares)
+    shares = shares or [float("nan")]
+    solver = {"sqp": "sequential quadratic programs", "ipopt": "IPOPT"}[check.solver.name]
+    return (
+        f"checked by {solver}, {counted(len(check.points), 'point')} from the plain cycloid: its "
+        f"energies differ by {min(shares):+.1g} to {max(shares):+.1g} of their size"
+        + f"; it found no motion for {missing}"
+        * (missing > 0)
+    )
+
+
+def _asked(failure: FailedPoint, tip_unit: str) -> str:
+    if RESIDUAL_LIMIT in failure.asked:
+        peaks = "".join(
+            f" and {name.removesuffix('_limit')} <= {size:.3g}"
+            for name, size in failure.asked.items()
+            if name != RESIDUAL_LIMIT
+        )
+        return f"residual <= {tip_words(failure.asked[RESIDUAL_LIMIT], tip_unit)}{peaks}"
+    return ":".join(f"{weight:.3g}" for weight in failure.asked.values()) + " (residual:energy)"

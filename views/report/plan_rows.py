@@ -1,0 +1,368 @@
+"""A plan, a floor or a recorded path in rows of a name and a value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quietarm.models import Plant, RobotOnPath
+from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.notes import about
+from quietarm.ocp import (
+    CycloidPolynomial,
+    Floor,
+    JointSpline,
+    Motion,
+    Plan,
+    PointToPoint,
+    ShapedCycloid,
+    Worst,
+)
+from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.joint_words import peak_words
+from quietarm.ocp.limits import QUANTITIES, Limit
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
+from quietarm.ocp.planning.plan_along import EXCESS
+from quietarm.ocp.record import AGREEMENT, REST
+from quietarm.views.report.robot_rows import way_rows
+from quietarm.views.report.words import (
+    move_of,
+    moved,
+    residual_place,
+    state_words,
+    unit_of_way,
+)
+from quietarm.views.tips import tip_words
+
+if TYPE_CHECKING:
+    from quietarm.machine.recordings.recorded_path import RecordedPath
+
+Row = tuple[str, str]
+HARD_REMEDIES: Mapping[str, str] = {
+    "acceleration": "give what the drive can do, as --acceleration-limit or --torque-limit",
+    "jerk": "give what the drive can do, as --jerk-limit",
+}
+"""What to do about a peak that a drive may not follow, by quantity."""
+_OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
+"""Of a floor, which nobody drives, and of a recorded path, whose smoothness has its own row."""
+_HARD = 5
+"""Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
+_DRIVE_RISES = 0.005
+_OF_CYCLOID = 0.1
+"""A warning of the jerk: at its peak the acceleration would change by its own peak within this [s],
+the rise time (0.35 over the bandwidth) of a position loop of 70 Hz, and five set points at 1 kHz;
+and within this share of the time that the plain cycloid takes."""
+_FAR = 0.1
+"""A limit that a motion does not come to this share of does not act, and silences no warning."""
+_SEEN = 1e-6
+_ROUNDING = 1e-9
+"""A joint passes its target where it does so by more [rad, m]; less is a rounding error."""
+
+
+def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[Row]:
+    """A plan's coefficients, figures and verification; and remedies where it is too hard."""
+    back = plan.turns_back
+    return [
+        *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
+        *_arrival_rows(plan),
+        _choice(plan),
+        *_terms_rows(plan),
+        *_figure_rows(plan.task, plan.candidate, remedies),
+        *note_rows(plan.task.plant),
+        *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
+        *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
+        ("status", plan.status.text),
+        _verified_row(plan),
+        *_full_rows(plan),
+        ("time", f"{plan.record.seconds:.2f} s"),
+    ]
+
+
+def _arrival_rows(plan: Plan) -> list[Row]:
+    """What a robust plan may leave, said first: it does not arrive at rest."""
+    if plan.worst is None or plan.worst.residual < REST * plan.task.smallness:
+        return []
+    residual = _tip(plan.task, plan.worst.residual)
+    return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
+
+
+def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
+    """The motion without a profile that takes least energy, beside a plan of the same move."""
+    motion = floor.motion
+    check = floor.verification
+    beside = "none within these limits"
+    if plan is not None:
+        beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times as much"
+    worst = max(floor.starts) / min(floor.starts) - 1
+    missing = int(floor.record.settings["starts"] or 0) - len(floor.starts)
+    starts = [
+        f"{floor.agreeing()} of {len(floor.starts)} end within 0.5 % of the best",
+        *([f"the worst is {worst:.1%} above it"] if worst > 0.005 else []),
+        *([f"{missing} failed"] if missing > 0 else []),
+    ]
+    unsettled = "" if floor.settled else " On a finer grid it failed."
+    error = floor.discretisation_error
+    return [
+        *_move_rows(floor.task, motion),
+        ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
+        *_figure_rows(floor.task, floor.candidate, _OF_ACCELERATION),
+        *note_rows(floor.task.plant),
+        ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
+        ("intervals", ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)),
+        ("starts", ", ".join(starts)),
+        (f"{_size(plan)} terms", beside),
+        ("status", floor.status.text + unsettled),
+        (
+            "verified",
+            f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
+            f"{abs(check.energy_difference) / motion.energy:.0e} of the energy",
+        ),
+        ("time", f"{floor.record.seconds:.2f} s"),
+    ]
+
+
+def _size(plan: Plan | None) -> int:
+    return CycloidPolynomial().terms if plan is None else plan.profile.size
+
+
+def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
+    """A recorded path's figures by CVODES; of an uncertain plant also at the corners."""
+    free = path.motion
+    candidate = Candidate.of_free_motion(task.certain, free)
+    ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
+    jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
+    unit = joint_unit("rad/s^2", task.plant.joint)
+    rows = [
+        *_move_rows(task, candidate.motion),
+        ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
+        ("smoothness", f"acceleration changes by up to {jump:.3g} {unit} from point to point"),
+        *_figure_rows(task, candidate, _OF_ACCELERATION),
+        *note_rows(task.plant),
+    ]
+    for scenario in task.scenarios[1:]:
+        errors = dict(zip(task.error_names, scenario))
+        residual = candidate.perturbed(errors).residual
+        words = _tip(task, residual)
+        rows.append(("residual", f"{words} with {_signed(errors)}"))
+    return [*rows, ("verified", "by CVODES alone, along the spline")]
+
+
+def sensitivity_rows(plan: Plan) -> list[Row]:
+    """What a parameter that is 1 % larger adds to residual and energy."""
+    return [
+        (
+            change.parameter,
+            f"{_tip(plan.task, change.residual / 100)}, {change.energy / plan.energy:+.3g} %",
+        )
+        for change in plan.sensitivities
+    ]
+
+
+def worst_in_words(worst: Worst, tip_unit: str) -> str:
+    """The residual of the worst case, and the parameter errors that it comes with."""
+    return f"{tip_words(worst.residual, tip_unit)} with {_signed(worst.errors)}"
+
+
+def _signed(errors: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
+
+
+def _worst_of_plan(plan: Plan, worst: Worst) -> str:
+    """The worst case of a robust plan, and how far it is from the residual limit."""
+    words = worst_in_words(worst, plan.task.plant.tip_unit)
+    if plan.excess is None:
+        return words
+    share = f"{100 * abs(plan.excess):.1f} %"
+    side = "above" if plan.excess > 0 else "below"
+    words += ", at the limit" if share == "0.0 %" else f", {share} {side} the limit"
+    if plan.excess > EXCESS:
+        words += (
+            f"; not robust enough: more than {EXCESS:.0%} above; give a larger --residual-limit, "
+            "more --terms or a smaller --error"
+        )
+    return words
+
+
+def _verified_row(plan: Plan) -> Row:
+    """How far the two integrators agree; the word `verified` only where that is near enough."""
+    check = plan.verification
+    residual = _tip(plan.task, abs(check.residual_difference))
+    differ = f"{check.energy_share:.0e} of the energy and {residual}"
+    if check.agrees:
+        return "verified", f"by CVODES, within {differ}"
+    remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
+    return "not verified", (
+        f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
+        f"where {AGREEMENT:g} of each is agreement; give {remedy}"
+    )
+
+
+def _full_rows(plan: Plan) -> list[Row]:
+    """What the whole equations say of a motion whose plant is a reduction of them."""
+    figures = plan.candidate.in_full
+    if figures is None:
+        return []
+    share = abs(figures.energy / plan.energy - 1)
+    residual = tip_words(figures.residual, plan.task.plant.tip_unit)
+    more = figures.residual - plan.residual
+    certain = plan.task.uncertainty is None
+    remedy = "; --in-full corrects the plan for that" if certain and more > _LEFT else ""
+    return [
+        (
+            "in full",
+            f"{figures.energy:.6g} J ({share:.0e} from F2) and {residual} left, by CVODES on the "
+            f"whole equations, without modes and tables{remedy}",
+        )
+    ]
+
+
+_LEFT = 1e-4
+"""What a plan may leave by the whole equations, beyond its residual, before a remedy is named [m]:
+the figure that paths are held to."""
+
+
+def _path_rows(task: PointToPoint) -> list[Row]:
+    """What to know of the path of a robot; of other plants nothing."""
+    plant = task.plant
+    return way_rows(plant.robot, plant.path) if isinstance(plant, RobotOnPath) else []
+
+
+def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
+    """The move and its limits, and which of them the motion breaks."""
+    tip_unit = task.plant.tip_unit
+    limits = [f"residual {_tip(task, residual_limit)}"] if residual_limit > 0 else []
+    for limit in task.limits:
+        peak = limit.peak_of(motion)
+        broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
+        limits.append(f"{limit}{broken}")
+    return [
+        ("move", f"{moved(task)}, {move_of(task)}"),
+        *_path_rows(task),
+        *([("at the start", state_words(task.initial, tip_unit))] if task.initial else []),
+        *([("on arrival", state_words(task.final, tip_unit))] if task.final else []),
+        *([("limits", ", ".join(limits))] if limits else []),
+    ]
+
+
+def _figure_rows(
+    task: PointToPoint, candidate: Candidate, remedies: Mapping[str, str]
+) -> list[Row]:
+    """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
+    motion = candidate.motion
+    residual = _tip(task, motion.residual)
+    rest = REST * task.smallness
+    if motion.residual < rest:  # nobody sees a difference
+        where = "as wanted" if task.final else "at rest"
+        residual = f"{where} (below {_tip(task, rest)})"
+    known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
+    return [
+        (
+            "energy (F2)",
+            f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J){_warnings(task, 'energy')}",
+        ),
+        (
+            "residual (F1)",
+            f"{residual} {residual_place(task)}{_warnings(task, 'residual')}",
+        ),
+        *((_peak_name(name, task), _peak(name, candidate, remedies)) for name in known),
+        ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
+    ]
+
+
+def note_rows(plant: Plant) -> list[Row]:
+    """Notes on a plant that are about none of the figures."""
+    return [("warning", note.words) for note in plant.notes if not note.about]
+
+
+def _warnings(task: PointToPoint, figure: str) -> str:
+    """The notes on the plant that touch a figure, to stand beside it."""
+    return "".join(f"  (warning: {words})" for words in about(task.plant.notes, figure))
+
+
+def _peak_name(name: str, task: PointToPoint) -> str:
+    return joint_label(f"peak {name.replace('_', ' ')}", task.plant.joint)
+
+
+def _tip(task: PointToPoint, displacement: float) -> str:
+    """A displacement of the tip in the unit that is shown."""
+    return tip_words(displacement, task.plant.tip_unit)
+
+
+def _way(size: float, task: PointToPoint) -> str:
+    """A way of the joint in its unit; of several joints a share of their path."""
+    return f"{size:.3g} {unit_of_way(task.plant)}"
+
+
+def _peak(name: str, candidate: Candidate, remedies: Mapping[str, str]) -> str:
+    """A peak, with a warning where the drive or the plant's equations may not follow."""
+    task = candidate.task
+    motion = candidate.motion
+    peak = motion.peak(name)
+    if name == "deflection":
+        small = task.plant.small_deflection
+        words = _tip(task, peak)
+        if small is None or max(motion.peak_deflection, motion.residual) <= small:
+            return words
+        return (
+            f"{words}  (warning: beyond {_tip(task, small)}, up to which the plant's "
+            "deflections count as small; its equations are less exact there)"
+        )
+    warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
+    too_hard = warnings[name](task, motion) if name in remedies else ""
+    warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
+    return f"{peak_words(candidate, name)}{warning}{_warnings(task, name)}"
+
+
+def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:
+    """How far the acceleration is above the plain cycloid's, where no limit is near."""
+    plain = CycloidPolynomial(0).path([], task.start, task.target, task.duration)
+    times = motion.peak_acceleration / abs(float(plain(task.duration / 4, order=2)))  # its peak
+    limited = any(_is_near(limit, motion) for limit in task.limits)
+    return "" if limited or times <= _HARD else f"{times:.2g} times the plain cycloid's"
+
+
+def _hard_jerk(task: PointToPoint, motion: Motion) -> str:
+    """How fast the acceleration changes, where no limit of the jerk is near."""
+    limit = task.limit_of("jerk")
+    ramp = motion.peak_acceleration / motion.peak("jerk")
+    of_cycloid = task.duration / (2 * math.pi)
+    limited = limit is not None and _is_near(limit, motion)
+    if limited or ramp >= min(_DRIVE_RISES, _OF_CYCLOID * of_cycloid):
+        return ""
+    return f"at this rate the acceleration changes by its peak in {1e3 * ramp:.2g} ms"
+
+
+def _is_near(limit: Limit, motion: Motion) -> bool:
+    return limit.peak_of(motion) > _FAR * limit.size
+
+
+def _choice(plan: Plan) -> Row:
+    """What makes the motion differ from others of its task, and its name."""
+    if isinstance(plan.profile, ShapedCycloid):
+        impulses = len(plan.profile.impulses.times)
+        shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
+        return "profile", f"{plan.profile.label}: {shaper}"
+    coefficients = ", ".join(f"{value:.6g}" for value in plan.coefficients)
+    if isinstance(plan.profile, JointSpline):
+        return "profile", f"quintic spline, {plan.profile.amount} where the acceleration changes"
+    if not isinstance(plan.profile, CycloidPolynomial):
+        return "profile", f"{plan.profile.label}: {coefficients}"
+    return "coefficients", coefficients or "none: the plain cycloid"
+
+
+def _terms_rows(plan: Plan) -> list[Row]:
+    """How many terms the plan chose, and what six would cost; none where they were given."""
+    settings = plan.record.settings
+    if CHOSEN not in settings:
+        return []
+    words = f"{settings[CHOSEN]}, chosen for the limits"
+    energy_of_six = float(settings.get(OF_SIX) or 0.0)
+    if energy_of_six:
+        words += f", six would take {energy_of_six:.4g} J ({energy_of_six / plan.energy - 1:+.0%})"
+    elif plan.worst is None:
+        words += ", six terms find no motion"
+    return [("terms", words)]
