@@ -92,10 +92,7 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
 
 def count_of(name: str, values: ArrayLike) -> int:
     """How many numbers are given; ValueError where no array can be made of them."""
-    try:
-        return int(np.size(values))
-    except Exception:  # an object's own __array__ may raise anything
-        return numbers(name, values, "a list of numbers").size
+    return numbers(name, values, "a list of numbers", infinite=True).size
 
 
 def instance(name: str, value: Any, *kinds: type[T]) -> T:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+import re
 from codecs import BOM_UTF8
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -43,6 +44,7 @@ PLANT_FILE = "plant_file"
 """Entry of a plant: the file it was loaded from."""
 CHECKSUM = "checksum"
 """Entry of an answer's file: a digest of all the others."""
+_MISSING = re.compile("Object missing required field `(.*?)`")
 _MOST_OF_PARSER = 120
 """Letters of a parser's message: its own words, and what it quotes of a file."""
 
@@ -127,14 +129,15 @@ def typed(document: Any, kind: type[T]) -> T:
         value = msgspec.convert(document, kind, dec_hook=_known_here)
     except msgspec.ValidationError as error:
         ours = error.__cause__ is not None  # words of a constructor, which quote little
-        raise ValueError(str(error) if ours else clipped(str(error), _MOST_OF_PARSER)) from None
+        words = str(error) if ours else clipped(str(error), _MOST_OF_PARSER)
+        raise ValueError(_MISSING.sub(r"it has no \1", words)) from None
     complete = plain(value, whole=True)
-    odd = _unknown(document, complete)
-    if isinstance(document, dict):
-        odd |= complete.keys() - _may_be_missing(value) - document.keys()
-    if odd:
-        names = clipped(", ".join(sorted(odd)))
-        raise ValueError(f"entries that are missing, or not known here: {names}")
+    if unknown_here := _unknown(document, complete):
+        names = clipped(", ".join(sorted(unknown_here)))
+        raise ValueError(f"it has entries that are not known here: {names}")
+    missing = complete.keys() - _may_be_missing(value) - {*document}
+    if missing and isinstance(document, dict):
+        raise ValueError(f"it has no {clipped(', '.join(sorted(missing)))}")
     return value
 
 

@@ -185,7 +185,10 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
         (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
         (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
         (lambda task: qa.pictures.draw_quantity([], "sped"), "did you mean 'speed'?"),
-        (lambda task: qa.plan_move(task, guess="a"), "coefficients are 'a'; give 1 number"),
+        (
+            lambda task: qa.plan_move(task, guess="a"),
+            "coefficients are 'a'; give a list of numbers",
+        ),
         (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
         (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
         (lambda task: qa.ocp.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
@@ -296,7 +299,7 @@ def test_a_plan_in_a_list_is_named_as_short_as_a_line(right):
 
 @pytest.mark.parametrize("coefficients", [["0.1"], [True], "ab"])
 def test_coefficients_are_numbers(right, coefficients):
-    with pytest.raises(ValueError, match="; give 1 number"):
+    with pytest.raises(ValueError, match="; give a list of numbers"):
         qa.evaluate_coefficients(right["task"], coefficients)
 
 

@@ -21,6 +21,8 @@ _SHORT = 20
 _TICKS = (1.0, 1e-3, 1e-6, 1e-7, 1e-9)
 """What counters of clocks count in [s], where nothing says it."""
 _BITS = (16, 24, 32)
+_DAY = 86400.0
+"""Seconds from midnight to midnight."""
 
 
 class Clock(NamedTuple):
@@ -86,7 +88,7 @@ def running(time: Array, tick: float = 0.0, numbers: Rows | None = None) -> Cloc
 
 
 class Wraps(NamedTuple):
-    """Where a counter wraps, after how many bits, and its whole period [s]."""
+    """Where a counter wraps, after how many bits (0: at midnight), and its whole period [s]."""
 
     after: Rows
     bits: int
@@ -101,9 +103,9 @@ class Wraps(NamedTuple):
     def in_words(self, numbers: Sequence[int] | Rows) -> str:
         """What was unwrapped, and where."""
         more = f" and {len(self.after) - 1} more" if len(self.after) > 1 else ""
+        counter = f"a counter of {self.bits} bits, wraps" if self.bits else "a time of day, wraps"
         return (
-            f"its clock, a counter of {self.bits} bits, wraps after row {numbers[self.after[0]]}"
-            f"{more}; the time is unwrapped"
+            f"its clock, {counter} after row {numbers[self.after[0]]}{more}; the time is unwrapped"
         )
 
 
@@ -131,7 +133,12 @@ def _wraps(time: Array, tick: float) -> Wraps | None:
 
 
 def _periods(time: Array, tick: float) -> Iterator[tuple[int, float, float]]:
-    """Bits and period [s] of counters that the times may be of, and to what these are rounded."""
+    """Bits and period [s] of counters that the times may be of, and to what these are rounded.
+
+    A time of day is of 0 bits.
+    """
+    if time.min() >= 0 and time.max() <= _DAY:
+        yield 0, _DAY, 0.0
     if tick:
         yield from ((bits, tick * 2.0**bits, 0.0) for bits in _BITS)
         yield 32, 1e-3 * tick * 2.0**32, tick  # micros() / 1000 wraps with micros()

@@ -109,9 +109,18 @@ def _tables(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     document = read_yaml(path, "limits file")
     while isinstance(document, dict) and _LIMITS not in document and len(document) == 1:
         (inner,) = document.values()
-        if not isinstance(inner, dict) or nearest_name(str(next(iter(document))), [_LIMITS]):
+        if (
+            not isinstance(inner, dict)
+            or _is_of_a_joint(inner)
+            or nearest_name(str(next(iter(document))), [_LIMITS])
+        ):
             break
         document = inner
+    if isinstance(document, dict) and any(map(_is_of_a_joint, document.values())):
+        raise ValueError(
+            f"limits file {path} begins with {clipped(str(next(iter(document))))}; give "
+            f"{_LIMITS}: as its first line, and the joints indented below it"
+        )
     if not isinstance(document, dict) or not document:
         raise ValueError(f"limits file {path} has no {_LIMITS}; give a joint_limits.yaml of MoveIt")
     for name in document:
@@ -127,6 +136,11 @@ def _tables(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
         )
     beside = {name: value for name, value in document.items() if name != _LIMITS}
     return {str(joint): table for joint, table in by_joint.items()}, beside
+
+
+def _is_of_a_joint(table: Any) -> bool:
+    """Whether something is the table of a joint's limits."""
+    return isinstance(table, dict) and not {*_KNOWN}.isdisjoint(map(str, table))
 
 
 class _Reader:

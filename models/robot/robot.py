@@ -53,7 +53,7 @@ from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offse
 from quietarm.models.robot.path import GeometricPath
 from quietarm.models.robot.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot
-from quietarm.models.robot.robot_notes import notes_of, notes_of_text
+from quietarm.models.robot.robot_notes import mimics_nothing, notes_of, notes_of_text
 from quietarm.models.robot.stick_figure import stick_figure_of
 from quietarm.models.robot.tables import (
     EXCITED,
@@ -497,10 +497,14 @@ class Robot:
                 )
         for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
             for name in getattr(self, entry):
-                if name not in self._moved_by_motors():
+                if name in self._moved_by_motors():
+                    continue
+                if why := mimics_nothing(self.description, name):
                     raise ValueError(
-                        has_no("the robot", f"driven joint, for {entry},", name, driven)
+                        f"joint {quoted(name)}, which has an entry in {entry}, {why}, which the "
+                        "URDF does not have; mend its mimic element"
                     )
+                raise ValueError(has_no("the robot", f"driven joint, for {entry},", name, driven))
         if self.beam is not None and self.beam.at not in self.description.links:
             raise ValueError(
                 has_no("the URDF", "link, for the beam,", self.beam.at, self.description.links)

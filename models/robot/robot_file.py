@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import clipped, has_no, quoted
+from quietarm.models.checks import clipped, has_no, listed, quoted
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
+from quietarm.models.notes import Note
 from quietarm.models.robot.beam import Beam
 from quietarm.models.robot.files import read_text, read_yaml
 from quietarm.models.robot.flexibility import Base, Measured, Spring
@@ -170,8 +171,18 @@ def _limits(given: Mapping[str, Any], folder: Path) -> JointLimits:
     return JointLimits(
         _of_leaders(read.limits, followers),
         _ranges_of_leaders(read.positions, followers, description.joints),
-        read.notes,
+        [*read.notes, *_without_limits(driven, read.limits)],
     )
+
+
+def _without_limits(driven: Collection[str], limits: ByQuantity) -> Iterator[Note]:
+    """Driven joints whose torque or speed nothing limits: a 0 in a URDF stands for no limit."""
+    for quantity, entry in (("torque", "effort"), ("speed", "velocity")):
+        names = [name for name in driven if name not in limits.get(quantity, {})]
+        if names:
+            yield Note(
+                f"no limit of {quantity} for {listed(names)}: the URDF's {entry} is 0, or missing"
+            )
 
 
 def _ranges_of_leaders(

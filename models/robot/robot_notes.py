@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietarm.models.checks import quoted
+from quietarm.models.checks import nearest_name, quoted
 from quietarm.models.notes import Note
 from quietarm.models.robot.following import held_position, limits_with_followers
 from quietarm.models.robot.urdf import PRISMATIC, Urdf
@@ -136,14 +136,19 @@ def _held_followers(robot: Robot) -> Iterator[Note]:
 
 def _without_leader(urdf: Urdf) -> Iterator[Note]:
     """Joints that mimic what the URDF does not have."""
-    missing = {
-        name: joint.mimics.joint
-        for name, joint in urdf.joints.items()
-        if joint.mimics is not None and joint.mimics.joint not in urdf.joints
-    }
+    missing = [name for name in urdf.joints if mimics_nothing(urdf, name)]
     if missing:
-        names = listed([f"{name} mimics {leader}" for name, leader in missing.items()])
+        names = listed([f"{name} {mimics_nothing(urdf, name)}" for name in missing])
         yield Note(f"joints of the URDF are held, as it does not have what they mimic: {names}")
+
+
+def mimics_nothing(urdf: Urdf, joint: str) -> str:
+    """What a joint mimics that the URDF does not have, and the joint that is meant; or nothing."""
+    mimic = urdf.joints[joint].mimics if joint in urdf.joints else None
+    if mimic is None or mimic.joint in urdf.joints:
+        return ""
+    meant = nearest_name(mimic.joint, urdf.joints)
+    return f"mimics {quoted(mimic.joint)}{f' (did you mean {quoted(meant)}?)' if meant else ''}"
 
 
 def _without_ranges(robot: Robot) -> Iterator[Note]:

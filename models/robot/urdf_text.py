@@ -97,20 +97,36 @@ def dynamics_of(text: str) -> str:
 
 
 def passed_over(text: str) -> list[str]:
-    """Name the entries of a URDF that may bear on the motion and are not read, each once."""
-    root = parse(text)
-    names = list[str]()
-    for element, _ in _read(root):
-        if element.tag in _NUMBERS:
-            known = ATTRIBUTES.get(element.tag, ())
-            unread = [name for name in element.attrib if name not in known]
-            names += [f"{name} of {element.tag}" for name in unread]
-        if element.tag in CHILDREN and element.tag != "robot":
-            known = (*CHILDREN[element.tag], *_WITHOUT_EFFECT.get(element.tag, ()))
-            names += [
-                f"{child.tag} of {element.tag}" for child in element if child.tag not in known
-            ]
-    return list(dict.fromkeys(names))
+    """Name the entries of a URDF that may bear on the motion and are not read, and whose they are.
+
+    Each entry once, with the first link or joint that has it and how many more do.
+    """
+    owners = dict[str, list[str]]()
+    for element, owner in _read(parse(text)):
+        for entry in _unread(element):
+            owners.setdefault(entry, []).append(quoted(owner.get("name")))
+    return [
+        f"{entry} of {names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}"
+        for entry, names in owners.items()
+    ]
+
+
+def _unread(element: ElementTree.Element) -> Iterator[str]:
+    """What an element has that is not read: attributes with numbers, and elements within it."""
+    if element.tag in _NUMBERS:
+        known = ATTRIBUTES.get(element.tag, ())
+        yield from (f"{name} of {element.tag}" for name in element.attrib if name not in known)
+    if element.tag in CHILDREN and element.tag != "robot":
+        known = (*CHILDREN[element.tag], *_WITHOUT_EFFECT.get(element.tag, ()))
+        for child in element:
+            if child.tag not in known:
+                yield f"{child.tag}{_soft_range(child)}"
+
+
+def _soft_range(element: ElementTree.Element) -> str:
+    """The range in which a safety controller lets its joint move at all, in words."""
+    ends = [element.get(f"soft_{end}_limit") for end in ("lower", "upper")]
+    return f" ({ends[0] or 'none'} to {ends[1] or 'none'})" if any(ends) else ""
 
 
 def as_read_before(text: str) -> str:

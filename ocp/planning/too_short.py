@@ -14,6 +14,8 @@ from quietarm.ocp.planning.rigid_pass import least_duration, values_at_rest
 from quietarm.ocp.task import PointToPoint
 
 _OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", TORQUE_SPEED)
+_NO_MOVE = 1e3
+"""So many times longer is no other duration of the same move: a unit was mistaken."""
 _SURE = 0.95
 """Share of the least duration by torque and deflection that is surely too short: the equations are
 not quite linear, and the bound is a sum over places."""
@@ -42,10 +44,12 @@ def refuse_too_short(task: PointToPoint, at_rest: bool = False) -> None:
     limits = of_a_joint if by_joints >= by_plant else task.limits
     names = ", ".join(limit.label for limit in limits)
     needed = _needed(task, at_rest) if len(task.limits) == 1 else ""
+    least = max(by_joints, by_plant)
+    unit = "; were other units meant?" if least > _NO_MOVE * task.duration else ""
     raise InfeasibleTaskError(
         f"{task.duration:g} s is too short: within the limits of {names} even a rigid "
-        f"joint takes {max(by_joints, by_plant):.4g} s{needed}; give a longer duration or wider "
-        "limits"
+        f"joint takes {least:.4g} s{needed}; give a longer duration or wider "
+        f"limits{unit}"
     )
 
 

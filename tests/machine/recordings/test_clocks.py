@@ -29,6 +29,16 @@ def counted(seconds, tick, bits, signed):
     return ticks * tick
 
 
+def test_a_time_of_day_goes_on_after_midnight():
+    true = 86400.0 - 3.0 + 0.004 * np.arange(1500)
+    clock = running(true % 86400.0)
+    assert clock.time == pytest.approx(true)
+    (words,) = clock.changes.values()
+    assert words.startswith("its clock, a time of day, wraps after row 750")
+    with pytest.raises(ValueError, match="two recordings"):  # no midnight, but a second start
+        running(np.concatenate([true - 20.0, 0.004 * np.arange(1500)]))
+
+
 @pytest.mark.parametrize("signed", [False, True])
 @pytest.mark.parametrize(
     ("bits", "tick", "step", "known"),

@@ -141,7 +141,15 @@ def test_a_joint_whose_leader_the_urdf_lacks_is_held_and_named():
     robot = robot_of(text)
     assert robot.joints == ("shoulder",)
     assert robot.held_position("elbow") == 0.2
-    assert "elbow mimics hidden" in words_of(robot)
+    assert "elbow mimics 'hidden'" in words_of(robot)
+
+
+def test_where_the_leader_is_mistyped_the_joint_that_is_meant_is_asked_for():
+    text = with_elbow('<mimic joint="sholder"/>')
+    assert "mimics 'sholder' (did you mean 'shoulder'?)" in words_of(robot_of(text))
+    words = "'elbow', which has an entry in friction, mimics 'sholder' .did you mean 'shoulder'"
+    with pytest.raises(ValueError, match=words):
+        robot_of(text, friction={"elbow": 1.0})
 
 
 @pytest.mark.parametrize(("entries", "words"), [

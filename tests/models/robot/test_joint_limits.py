@@ -83,6 +83,14 @@ def test_limits_of_held_joints_are_not_limits_of_the_move(tmp_path):
     assert moveit.limits == urdf.limits
 
 
+def test_a_driven_joint_that_nothing_limits_is_named(tmp_path):
+    text = ARM.replace('effort="150" velocity="3"', 'effort="0" velocity="3"', 1)
+    robot = qa.Robot.load(write_robot(tmp_path, text, f"{ARM_FILE}limits: urdf\n"))
+    assert robot.limits == {"torque": {"b": 150.0}, "speed": {"a": 3.0, "b": 3.0}}
+    (note,) = robot.notes
+    assert note.words == "no limit of torque for a: the URDF's effort is 0, or missing"
+
+
 def test_what_is_for_controllers_and_requests_is_named(tmp_path):
     write_robot(tmp_path, ARM, f"{ARM_FILE}limits: joint_limits.yaml\n")
     (tmp_path / "joint_limits.yaml").write_text("""
@@ -136,6 +144,8 @@ def test_what_a_file_of_limits_may_not_say(tmp_path, limits, words):
     ("joint_limits: {}\nscaling: 3", "has no entry 'scaling'"),
     ("joint_limits: 3", "has no joint_limits by joint"),
     ("[]", "has no joint_limits; give a joint_limits.yaml"),
+    ("elbow: {max_velocity: 1}", "begins with elbow; give joint_limits: as its first line"),
+    ("a: {has_jerk_limits: true}\nb: {}", "begins with a; give joint_limits: as its first line"),
 ])  # fmt: skip
 def test_what_is_no_file_of_limits(tmp_path, text, words):
     write_robot(tmp_path, ARM, f"{ARM_FILE}limits: joint_limits.yaml\n")

@@ -86,7 +86,8 @@ def test_a_circle_of_mimics_is_refused():
 def test_what_others_add_is_not_taken_for_a_mistake(name):
     """As in URDFs of ANYmal: it is named, and nothing is refused."""
     robot = robot_of(URDF.replace('effort="50"', f'effort="50" {name}="1"'))
-    assert words_of(robot) == f"not read of the URDF: {name} of limit"
+    joints = "'shoulder' and 1 more"
+    assert words_of(robot) == f"not read of the URDF: {name} of limit of {joints}"
 
 
 def test_what_does_not_bear_on_the_motion_is_not_named():
@@ -100,7 +101,8 @@ def test_what_does_not_bear_on_the_motion_is_not_named():
 
 def test_what_is_not_read_stays_named_when_the_robot_is_made_again():
     robot = robot_of(with_elbow('<safety_controller soft_upper_limit="1"/><dynamics D="3"/>'))
-    words = "not read of the URDF: safety_controller of joint, D of dynamics"
+    entries = "safety_controller (none to 1) of 'elbow', D of dynamics of 'elbow'"
+    words = f"not read of the URDF: {entries}"
     assert words_of(robot) == words
     assert words_of(qa.Robot(**{entry: getattr(robot, entry) for entry in asdict(robot)})) == words
 
