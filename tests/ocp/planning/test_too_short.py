@@ -31,6 +31,11 @@ def test_within_a_box_too_it_is_refused_with_a_remedy():
         plan_move(AXIS, bound=0.2)
 
 
+def test_a_limit_that_is_far_too_small_asks_for_its_unit():
+    with pytest.raises(InfeasibleTaskError, match=r"wider limits; were other units meant\?$"):
+        refuse_too_short(replace(AXIS, speed_limit=1e-9))
+
+
 @pytest.mark.parametrize("find", [epsilon_front, weighted_front])
 def test_fronts_are_refused_alike(find):
     with pytest.raises(InfeasibleTaskError, match="even a rigid joint takes 2 s"):
