@@ -42,20 +42,14 @@ from quietarm.models.joint_motion import (
 )
 from quietarm.models.notes import Note
 from quietarm.models.plant import Plant, content, parameter
-from quietarm.models.robot.beam import Beam
-from quietarm.models.robot.dynamics import Dynamics
-from quietarm.models.robot.files import read_text
-from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.following import Following, followers_of, held_position
-from quietarm.models.robot.full import FullRobot
-from quietarm.models.robot.mechanism import BEAM_END, GROUND, Mechanism, build_mechanism
-from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
-from quietarm.models.robot.path import GeometricPath
-from quietarm.models.robot.piecewise import Place
-from quietarm.models.robot.robot_file import read_robot
-from quietarm.models.robot.robot_notes import notes_of, notes_of_text
-from quietarm.models.robot.stick_figure import stick_figure_of
-from quietarm.models.robot.tables import (
+from quietarm.models.robot.dynamics.dynamics import Dynamics
+from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND, Mechanism, build_mechanism
+from quietarm.models.robot.dynamics.modes import as_measured, modes_at, sag_at, tip_offset
+from quietarm.models.robot.elastic.beam import Beam
+from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
+from quietarm.models.robot.on_path.full import FullRobot
+from quietarm.models.robot.on_path.stick_figure import stick_figure_of
+from quietarm.models.robot.on_path.tables import (
     EXCITED,
     FARTHEST,
     MOST_MODES,
@@ -69,8 +63,14 @@ from quietarm.models.robot.tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.urdf import PRISMATIC, Urdf, read_urdf
-from quietarm.models.robot.urdf_text import as_read_before, dynamics_of
+from quietarm.models.robot.path.path import GeometricPath
+from quietarm.models.robot.path.piecewise import Place
+from quietarm.models.robot.robot_file import read_robot
+from quietarm.models.robot.robot_notes import notes_of, notes_of_text
+from quietarm.models.robot.text_files import read_text
+from quietarm.models.robot.urdf.following import Following, followers_of, held_position
+from quietarm.models.robot.urdf.urdf import PRISMATIC, Urdf, read_urdf
+from quietarm.models.robot.urdf.urdf_text import as_read_before, dynamics_of
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""

@@ -9,9 +9,9 @@ import numpy as np
 
 from quietarm.models.checks import quoted
 from quietarm.models.notes import Note
-from quietarm.models.robot.following import held_position, limits_with_followers
-from quietarm.models.robot.urdf import PRISMATIC, Urdf
-from quietarm.models.robot.urdf_text import passed_over
+from quietarm.models.robot.urdf.following import held_position, limits_with_followers
+from quietarm.models.robot.urdf.urdf import PRISMATIC, Urdf
+from quietarm.models.robot.urdf.urdf_text import passed_over
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import Robot

@@ -16,7 +16,7 @@ from quietarm.models.joint_motion import Array
 from quietarm.models.robot.frames import rotation_about, rotation_of
 
 if TYPE_CHECKING:
-    from quietarm.models.robot.path import GeometricPath
+    from quietarm.models.robot.path.path import GeometricPath
     from quietarm.models.robot.robot import Robot
 
 LEAST_LENGTH = 1e-6

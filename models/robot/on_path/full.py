@@ -9,10 +9,10 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array, JointMotion
-from quietarm.models.robot.modes import sag_at
-from quietarm.models.robot.piecewise import Place
-from quietarm.models.robot.reduction import Reduction
-from quietarm.models.robot.tables import modes_on
+from quietarm.models.robot.dynamics.modes import sag_at
+from quietarm.models.robot.on_path.reduction import Reduction
+from quietarm.models.robot.on_path.tables import modes_on
+from quietarm.models.robot.path.piecewise import Place
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import RobotOnPath

@@ -17,7 +17,7 @@ import numpy as np
 from quietarm.models.checks import listed, quoted
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.frames import Frame, rotation_of, rotation_of_quaternion
-from quietarm.models.robot.urdf_text import parse
+from quietarm.models.robot.urdf.urdf_text import parse
 
 REVOLUTE = "revolute"
 PRISMATIC = "prismatic"

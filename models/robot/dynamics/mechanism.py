@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.beam import Beam
-from quietarm.models.robot.following import Following
+from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.frames import Frame, rotation_about
-from quietarm.models.robot.urdf import FIXED, PRISMATIC, Inertia, Urdf, UrdfJoint
+from quietarm.models.robot.urdf.following import Following
+from quietarm.models.robot.urdf.urdf import FIXED, PRISMATIC, Inertia, Urdf, UrdfJoint
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import Robot

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 from quietarm.interrupts import interruptible
 from quietarm.models.checks import listed, quoted
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.cartesian import Pose, kinematics_of, straight_positions
-from quietarm.models.robot.files import read_text, read_yaml
-from quietarm.models.robot.piecewise import NoFitError, Piecewise, fit, interpolate
+from quietarm.models.robot.path.cartesian import Pose, kinematics_of, straight_positions
+from quietarm.models.robot.path.piecewise import NoFitError, Piecewise, fit, interpolate
+from quietarm.models.robot.text_files import read_text, read_yaml
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.dynamics import Dynamics, SoftSpringError
-from quietarm.models.robot.flexibility import Measured
-from quietarm.models.robot.spectra import spectrum
+from quietarm.models.robot.dynamics.dynamics import Dynamics, SoftSpringError
+from quietarm.models.robot.elastic.flexibility import Measured
+from quietarm.models.robot.elastic.spectra import spectrum
 
 _MOST_STIFFER = 25.0
 """So many times stiffer, or softer, may a measured frequency make the springs."""

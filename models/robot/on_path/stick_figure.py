@@ -11,11 +11,11 @@ import numpy as np
 
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array
+from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
+from quietarm.models.robot.dynamics.modes import sag_at
 from quietarm.models.robot.frames import Frame
-from quietarm.models.robot.mechanism import BEAM_END, GROUND
-from quietarm.models.robot.modes import sag_at
-from quietarm.models.robot.reduction import Reduction
-from quietarm.models.robot.tables import modes_on
+from quietarm.models.robot.on_path.reduction import Reduction
+from quietarm.models.robot.on_path.tables import modes_on
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import RobotOnPath

@@ -14,8 +14,8 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array
+from quietarm.models.robot.dynamics.mechanism import GROUND, Body, Mechanism
 from quietarm.models.robot.frames import Frame, skew_of
-from quietarm.models.robot.mechanism import GROUND, Body, Mechanism
 
 _NOTHING = 1e-10
 """Below this an entry of a fixed rotation is 0: a URDF's rpy has pi/2 to eleven digits."""

@@ -16,8 +16,8 @@ import numpy as np
 from quietarm.models.beam_modes import beam_modes
 from quietarm.models.checks import not_negative, positive, quoted, whole
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.spectra import spectrum
-from quietarm.models.robot.urdf import Inertia
+from quietarm.models.robot.elastic.spectra import spectrum
+from quietarm.models.robot.urdf.urdf import Inertia
 
 USUAL_PIECES = 6
 MOST_PIECES = 20

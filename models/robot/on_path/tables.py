@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quietarm.models.joint_motion import Array, Expression
-from quietarm.models.robot.path import BEYOND, GeometricPath
-from quietarm.models.robot.piecewise import (
+from quietarm.models.robot.on_path.reduction import (
+    FORCING,
+    OF_MODES,
+    OF_TORQUES,
+    Coefficients,
+    Reduction,
+)
+from quietarm.models.robot.path.path import BEYOND, GeometricPath
+from quietarm.models.robot.path.piecewise import (
     NODES,
     NoFitError,
     Piecewise,
@@ -21,7 +28,6 @@ from quietarm.models.robot.piecewise import (
     fit,
     interpolate,
 )
-from quietarm.models.robot.reduction import FORCING, OF_MODES, OF_TORQUES, Coefficients, Reduction
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import Robot
