@@ -134,7 +134,7 @@ def _fill(app, docname, source):
     if docname == "docs/commands":
         for name in COMMANDS:
             own = "list_" if name == "list" else name
-            command = f"quietarm.studies.cli.commands.{own}:{own}"
+            command = f"quietarm.studies.cli.commands.{name}_command:{own}"
             directive = f".. click:: {command}\n   :prog: quietarm {name}"
             source[0] += f"\n```{{eval-rst}}\n{directive}\n```\n"
     if docname.startswith("docs/reference/"):

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quietarm.metaheuristics.algorithms.presets import PRESETS
+from quietarm.metaheuristics.methods.presets import PRESETS
 from quietarm.metaheuristics.objective.stated_figures import check_figures
 from quietarm.metaheuristics.score import HYPERVOLUME, filled, objectives
 from quietarm.ocp import Front, Mark

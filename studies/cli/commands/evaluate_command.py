@@ -11,7 +11,7 @@ from quietarm.models import Robot
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
-from quietarm.studies.cli.commands.plan import Answer, finish_motion
+from quietarm.studies.cli.commands.plan_command import Answer, finish_motion
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS
+from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from numbers import Integral
 from typing import TYPE_CHECKING
 
-from quietarm.metaheuristics.algorithms.settings import MethodSetting, Value, with_defaults
+from quietarm.metaheuristics.methods.settings import MethodSetting, Value, with_defaults
 from quietarm.ocp.checks import unknown
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class Preset:
             When a setting or the population is not known or out of range, or a library is missing.
         """
         values = self.checked(population, settings)
-        from quietarm.metaheuristics.algorithms.building import built
+        from quietarm.metaheuristics.methods.building import built
 
         return built(self, population, values, objectives)
 

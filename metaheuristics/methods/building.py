@@ -16,13 +16,13 @@ from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from quietarm.metaheuristics.algorithms.settings import Value
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
+from quietarm.metaheuristics.methods.settings import Value
 from quietarm.metaheuristics.thinning import farthest_apart
 from quietarm.ocp.checks import install
 
 if TYPE_CHECKING:
-    from quietarm.metaheuristics.algorithms.presets import Preset  # which loads this file late
+    from quietarm.metaheuristics.methods.presets import Preset  # which loads this file late
 
 
 def built(
