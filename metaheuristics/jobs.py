@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from quietarm.interrupts import interruptible
+from quietarm.metaheuristics.evaluation.noise import noise_share, times_evaluated
 from quietarm.metaheuristics.methods.gradient_methods import (
     GRADIENT,
     check_settings,
@@ -28,7 +29,6 @@ from quietarm.metaheuristics.methods.user_method import (
     run_method,
     why_not_sent,
 )
-from quietarm.metaheuristics.objective.noise import noise_share, times_evaluated
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job

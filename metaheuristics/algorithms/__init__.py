@@ -1,4 +1,4 @@
 """The searches themselves: VEPSO, NSGA-II, and what is mended of pymoo's.
 
-It may import `objective`, `problems` and `ocp`, and knows nothing of names, runs and checkpoints.
+It may import `evaluation`, `problems` and `ocp`, and knows nothing of names, runs and checkpoints.
 """

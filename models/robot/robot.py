@@ -18,16 +18,6 @@ import casadi as ca
 import numpy as np
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import (
-    finite,
-    has_no,
-    listed,
-    nearest,
-    not_negative,
-    positive,
-    quoted,
-    whole,
-)
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import (
     LINEAR,
@@ -41,8 +31,18 @@ from quietarm.models.joint_motion import (
     kind_of_joints,
 )
 from quietarm.models.notes import Note
+from quietarm.models.number_checks import (
+    finite,
+    has_no,
+    listed,
+    nearest,
+    not_negative,
+    positive,
+    quoted,
+    whole,
+)
 from quietarm.models.plant import Plant, content, parameter
-from quietarm.models.robot.dynamics.dynamics import Dynamics
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND, Mechanism, build_mechanism
 from quietarm.models.robot.dynamics.modes import as_measured, modes_at, sag_at, tip_offset
 from quietarm.models.robot.elastic.beam import Beam
@@ -63,13 +63,13 @@ from quietarm.models.robot.on_path.tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.path.path import GeometricPath
+from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.robot_notes import notes_of, notes_of_text
 from quietarm.models.robot.text_files import read_text
 from quietarm.models.robot.urdf.following import Following, followers_of, held_position
-from quietarm.models.robot.urdf.urdf import PRISMATIC, Urdf, read_urdf
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC, Urdf, read_urdf
 from quietarm.models.robot.urdf.urdf_text import as_read_before, dynamics_of
 
 STANDARD_GRAVITY = 9.80665

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietarm.models.checks import quoted
 from quietarm.models.notes import Note
+from quietarm.models.number_checks import quoted
 from quietarm.models.robot.urdf.following import held_position, limits_with_followers
-from quietarm.models.robot.urdf.urdf import PRISMATIC, Urdf
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC, Urdf
 from quietarm.models.robot.urdf.urdf_text import passed_over
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from quietarm.models.checks import clipped, install
+from quietarm.models.number_checks import clipped, install
 
 MOST_BYTES = 20_000_000
 """Of a file: URDFs have a few hundred thousand."""

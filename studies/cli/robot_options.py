@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
-from quietarm.models.robot.path.cartesian import kinematics_of, off_straight
-from quietarm.models.robot.urdf.urdf import PRISMATIC
+from quietarm.models.robot.path.straight_line import kinematics_of, off_straight
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.models.units import parse_quantity
 from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.checks import listed

@@ -16,7 +16,7 @@ from quietarm.models.joint_motion import Array
 from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.frames import Frame, rotation_about
 from quietarm.models.robot.urdf.following import Following
-from quietarm.models.robot.urdf.urdf import FIXED, PRISMATIC, Inertia, Urdf, UrdfJoint
+from quietarm.models.robot.urdf.read_urdf import FIXED, PRISMATIC, Inertia, Urdf, UrdfJoint
 
 if TYPE_CHECKING:
     from quietarm.models.robot.robot import Robot

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.dynamics.dynamics import Dynamics, SoftSpringError
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics, SoftSpringError
 from quietarm.models.robot.elastic.flexibility import Measured
 from quietarm.models.robot.elastic.spectra import spectrum
 

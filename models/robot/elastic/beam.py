@@ -14,10 +14,10 @@ from itertools import pairwise
 import numpy as np
 
 from quietarm.models.beam_modes import beam_modes
-from quietarm.models.checks import not_negative, positive, quoted, whole
 from quietarm.models.joint_motion import Array
+from quietarm.models.number_checks import not_negative, positive, quoted, whole
 from quietarm.models.robot.elastic.spectra import spectrum
-from quietarm.models.robot.urdf.urdf import Inertia
+from quietarm.models.robot.urdf.read_urdf import Inertia
 
 USUAL_PIECES = 6
 MOST_PIECES = 20

@@ -20,10 +20,10 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.dynamics.dynamics import Dynamics
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.modes import modes_at, sag_at
 from quietarm.models.robot.frames import Frame
-from quietarm.models.robot.path.path import GeometricPath
+from quietarm.models.robot.path.geometric_path import GeometricPath
 
 OF_MODES = ("a", "b", "e", "K", "A", "B", "D", "C")
 """Coefficients of the modes' equations."""

@@ -18,7 +18,7 @@ from quietarm.models.robot.on_path.reduction import (
     Coefficients,
     Reduction,
 )
-from quietarm.models.robot.path.path import BEYOND, GeometricPath
+from quietarm.models.robot.path.geometric_path import BEYOND, GeometricPath
 from quietarm.models.robot.path.piecewise import (
     NODES,
     NoFitError,

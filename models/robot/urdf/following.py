@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from quietarm.models.joint_motion import JointMotion
-from quietarm.models.robot.urdf.urdf import Urdf
+from quietarm.models.robot.urdf.read_urdf import Urdf
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import clipped, finite, has_no, listed, nearest, nearest_name, quoted
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.notes import Note
+from quietarm.models.number_checks import (
+    clipped,
+    finite,
+    has_no,
+    listed,
+    nearest,
+    nearest_name,
+    quoted,
+)
 from quietarm.models.robot.text_files import read_yaml
-from quietarm.models.robot.urdf.urdf import PRISMATIC, UrdfJoint
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC, UrdfJoint
 
 ByQuantity = dict[str, dict[str, float]]
 """Limits by quantity and joint."""

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 
-from quietarm.models.checks import clipped, quoted, spelling
+from quietarm.models.number_checks import clipped, quoted, spelling
 
 CHILDREN: Mapping[str, tuple[str, ...]] = {
     "robot": ("link", "joint"),

@@ -6,7 +6,7 @@ from robots import UR5_JOINTS, shipped_urdf, urdf_of
 
 import quietarm as qa
 from quietarm.models import Base
-from quietarm.models.robot.urdf.urdf import read_urdf
+from quietarm.models.robot.urdf.read_urdf import read_urdf
 from quietarm.models.robot.urdf.urdf_text import dynamics_of
 
 pinocchio = pytest.importorskip("pinocchio")

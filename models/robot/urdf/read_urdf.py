@@ -14,8 +14,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from quietarm.models.checks import listed, quoted
 from quietarm.models.joint_motion import Array
+from quietarm.models.number_checks import listed, quoted
 from quietarm.models.robot.frames import Frame, rotation_of, rotation_of_quaternion
 from quietarm.models.robot.urdf.urdf_text import parse
 

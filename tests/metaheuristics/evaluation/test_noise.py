@@ -6,8 +6,8 @@ from small_searches import SIXTH, exactly
 
 import quietarm as qa
 from quietarm.metaheuristics import MoveFunction, RecordedFunction, problem_of
-from quietarm.metaheuristics.objective.noise import Noise, belief_of, noise_share
-from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.evaluation.noise import Noise, belief_of, noise_share
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.score import objectives, scores_on_the_way
 from quietarm.ocp import CycloidPolynomial, Front

@@ -11,12 +11,12 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from quietarm.models.checks import has_no
 from quietarm.models.joint_motion import Array
+from quietarm.models.number_checks import has_no
 from quietarm.models.robot.frames import rotation_about, rotation_of
 
 if TYPE_CHECKING:
-    from quietarm.models.robot.path.path import GeometricPath
+    from quietarm.models.robot.path.geometric_path import GeometricPath
     from quietarm.models.robot.robot import Robot
 
 LEAST_LENGTH = 1e-6

@@ -8,7 +8,7 @@ import pytest
 from fixed_steps import rollout
 from populations import PLANTS, PROFILE, candidates, same_bits
 
-from quietarm.metaheuristics.objective.population import search_evaluator
+from quietarm.metaheuristics.evaluation.population import search_evaluator
 from quietarm.ocp import CycloidGaussians, CycloidNetwork, CycloidSpline
 from quietarm.ocp.limits import QUANTITIES
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from populations import PROFILE, candidates, pi
 
-from quietarm.metaheuristics.objective.population import search_evaluator
+from quietarm.metaheuristics.evaluation.population import search_evaluator
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import Candidate, PointToPoint
 from quietarm.studies.reproduce.paper import CONDITIONS

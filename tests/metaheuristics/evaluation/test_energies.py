@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-from quietarm.metaheuristics.objective.population import search_evaluator
+from quietarm.metaheuristics.evaluation.population import search_evaluator
 from quietarm.ocp import PositivePower
 from quietarm.ocp.simulation.evaluator import Evaluator
 

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import listed, quoted
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.path.cartesian import Pose, kinematics_of, straight_positions
+from quietarm.models.number_checks import listed, quoted
 from quietarm.models.robot.path.piecewise import NoFitError, Piecewise, fit, interpolate
+from quietarm.models.robot.path.straight_line import Pose, kinematics_of, straight_positions
 from quietarm.models.robot.text_files import read_text, read_yaml
 
 if TYPE_CHECKING:

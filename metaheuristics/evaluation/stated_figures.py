@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.objective.population import figures_of_motions
+from quietarm.metaheuristics.evaluation.population import figures_of_motions
 from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import Front, Motion, Plan
 from quietarm.ocp.checks import table_of
