@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quietarm.models.joint_motion import Array
+from quietarm.models.robot.dynamics.robot_parts import RobotParts
 from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.frames import Frame, rotation_about
 from quietarm.models.robot.urdf.following import Following
 from quietarm.models.robot.urdf.read_urdf import FIXED, PRISMATIC, Inertia, Urdf, UrdfJoint
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.robot import Robot
 
 GROUND = -1
 """In the place of a body's number."""
@@ -141,7 +138,7 @@ class _Tree:
             self.bodies[number] = replace(body, inertia=loaded)
 
 
-def build_mechanism(robot: Robot) -> Mechanism:
+def build_mechanism(robot: RobotParts) -> Mechanism:
     """The bodies of a robot."""
     urdf = robot.description
     tree = _Tree()
@@ -170,7 +167,7 @@ def build_mechanism(robot: Robot) -> Mechanism:
     )
 
 
-def _at_the_motors(robot: Robot, values: Mapping[str, float]) -> Array:
+def _at_the_motors(robot: RobotParts, values: Mapping[str, float]) -> Array:
     """Rotors or viscous friction that each driven joint feels, those of its followers as well."""
     felt = {name: values.get(name, 0.0) for name in robot.joints}
     for name, entry in robot.followers.items():
@@ -179,7 +176,7 @@ def _at_the_motors(robot: Robot, values: Mapping[str, float]) -> Array:
     return np.array(list(felt.values()))
 
 
-def _base(tree: _Tree, robot: Robot) -> tuple[int, Frame]:
+def _base(tree: _Tree, robot: RobotParts) -> tuple[int, Frame]:
     """Where the root link stands: on the ground, or on a pedestal that rocks about x and y."""
     if robot.base is None:
         return GROUND, Frame()
@@ -203,7 +200,7 @@ def _place(tree: _Tree, joint: UrdfJoint) -> tuple[int, Frame]:
 
 
 def _joined(
-    tree: _Tree, robot: Robot, joint: UrdfJoint, place: tuple[int, Frame]
+    tree: _Tree, robot: RobotParts, joint: UrdfJoint, place: tuple[int, Frame]
 ) -> tuple[int, Frame]:
     """Where the link after a joint stands, and the bodies that it takes."""
     if joint.kind == FIXED:

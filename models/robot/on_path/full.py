@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array, JointMotion
+from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
 from quietarm.models.robot.dynamics.modes import sag_at
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.on_path.reduction import Reduction
 from quietarm.models.robot.on_path.tables import modes_on
+from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.robot import RobotOnPath
 
 
 class FullRobot:
@@ -25,16 +24,22 @@ class FullRobot:
 
     Parameters
     ----------
-    plant : RobotOnPath
-        The robot on its path; its tables are not used.
+    robot : Robot
+        What moves; its tables are not used.
+    path : GeometricPath
+        Where its joints go.
+    stiffness, payload : float
+        Multiples of the robot's.
     """
 
-    def __init__(self, plant: RobotOnPath) -> None:
-        self._plant = plant
-        self._path = plant.path.extended
-        self._dynamics = plant.robot.dynamics_with(plant.stiffness, plant.payload)
-        self._tip = plant.robot.tip_place
-        self._rubbing = plant.coulomb
+    def __init__(
+        self, robot: MovingRobot, path: GeometricPath, stiffness: float, payload: float
+    ) -> None:
+        self._robot = robot
+        self._whole_path = path
+        self._path = path.extended
+        self._dynamics = robot.dynamics_with(stiffness, payload)
+        self._tip = robot.tip_place
         self.springs = self._dynamics.sprung
         """How many there are."""
 
@@ -68,7 +73,7 @@ class FullRobot:
         """Of the driven joints."""
         accelerations = self.accelerations(path, angles, rates)
         torques = self._torques(path, angles, rates, accelerations)[: self._dynamics.driven]
-        return torques + ca.vertcat(*self._rubbing(self.joints(path)))
+        return torques + ca.vertcat(*coulomb_torques(self._robot, self.joints(path)))
 
     def tip(self, path: JointMotion, angles: ca.SX) -> ca.SX:
         """Where the tip is, seen from the ground [m]."""
@@ -86,9 +91,9 @@ class FullRobot:
         state : ndarray, shape (2 * springs,)
             Angles of the springs [rad, or m], and their rates.
         """
-        plant = self._plant
-        numbers = modes_on(plant.robot, plant.path)
-        shapes = Reduction(plant.robot.dynamics, self._tip, plant.path, numbers).shapes
+        numbers = modes_on(self._robot, self._whole_path)
+        reduction = Reduction(self._robot.dynamics, self._tip, self._whole_path, numbers)
+        shapes = reduction.shapes
         sag = self.at_rest(place)
         positions = np.concatenate([self._path([place])[0], sag])
         driven = self._dynamics.driven

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -13,12 +12,11 @@ from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.dynamics.modes import sag_at
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.frames import Frame
 from quietarm.models.robot.on_path.reduction import Reduction
-from quietarm.models.robot.on_path.tables import modes_on
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.robot import RobotOnPath
+from quietarm.models.robot.on_path.tables import modes_on, tables_of
+from quietarm.models.robot.path.geometric_path import GeometricPath
 
 _ELEVATION = np.radians(25.0)
 """From which the robot is seen."""
@@ -29,9 +27,9 @@ _PLACES = 11
 
 
 @lru_cache(maxsize=8)
-def stick_figure_of(plant: RobotOnPath) -> StickFigure:
+def stick_figure_of(robot: MovingRobot, path: GeometricPath) -> StickFigure:
     """Of a robot on a path, computed once."""
-    return StickFigure(plant)
+    return StickFigure(robot, path)
 
 
 class StickFigure:
@@ -40,18 +38,17 @@ class StickFigure:
     What bends does so as its modes do.
     """
 
-    def __init__(self, plant: RobotOnPath) -> None:
-        robot = plant.robot
-        self._path = plant.path
+    def __init__(self, robot: MovingRobot, path: GeometricPath) -> None:
+        self._path = path
         self._dynamics = robot.dynamics
         self._bodies = robot.mechanism.bodies
         self._driven = robot.mechanism.driven
         self._tip = robot.tip_place
         self._has_beam = robot.beam is not None and robot.tip == BEAM_END
-        modes = modes_on(robot, plant.path)
-        reduction = Reduction(robot.dynamics, robot.tip_place, plant.path, modes)
+        modes = modes_on(robot, path)
+        reduction = Reduction(robot.dynamics, robot.tip_place, path, modes)
         self._shapes = reduction.shapes
-        self._plant = plant
+        self._tables = tables_of(robot, path)
         self._origins_of = self._function()
         self._view, self._floor = self._seen()
 
@@ -98,7 +95,7 @@ class StickFigure:
         """Of the ground, of every body, and the tip [m], shape (bodies + 2, 3)."""
         q = self._path(place)
         p = sag_at(self._dynamics, q)
-        rows = self._plant.tables.at(float(place)).values(self._plant.tables.tips)
+        rows = self._tables.at(float(place)).values(self._tables.tips)
         amplitudes, *_ = np.linalg.lstsq(rows.astype(float), tips, rcond=None)
         x = np.concatenate([q, p + self._shapes @ amplitudes])
         return self._origins_of(x).full().T
@@ -112,7 +109,7 @@ class StickFigure:
 
     def _seen(self) -> tuple[Array, Array]:
         """Columns by which a point in space is drawn, and the corners of the floor."""
-        still = np.zeros(self._plant.tips)
+        still = np.zeros(len(self._tables.directions))
         figures = np.array([
             self._origins(place, still) for place in np.linspace(0.0, 1.0, _PLACES)
         ])  # fmt: skip

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quietarm.models.joint_motion import Array, Expression
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.on_path.reduction import (
     FORCING,
     OF_MODES,
@@ -28,9 +28,6 @@ from quietarm.models.robot.path.piecewise import (
     fit,
     interpolate,
 )
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.robot import Robot
 
 ACCURACY = 1e-9
 """Largest error of a table, as a share of what the coefficient can matter."""
@@ -140,7 +137,7 @@ class Swing:
 
 
 @lru_cache(maxsize=64)
-def swings_of(robot: Robot, path: GeometricPath) -> tuple[Swing, ...]:
+def swings_of(robot: MovingRobot, path: GeometricPath) -> tuple[Swing, ...]:
     """The slowest modes of a robot, twelve at most, and how a path excites each."""
     count = min(MOST_MODES, len(robot.mechanism.sprung))
     reduction = Reduction(robot.dynamics, robot.tip_place, path, range(count))
@@ -165,7 +162,7 @@ _EXCITED_SHARE = 1e-3
 """Of what the most excited mode leaves: a mode that leaves less is not followed."""
 
 
-def modes_on(robot: Robot, path: GeometricPath) -> tuple[int, ...]:
+def modes_on(robot: MovingRobot, path: GeometricPath) -> tuple[int, ...]:
     """Numbers of the modes that are followed on a path: so many, or those that it excites."""
     if robot.modes != EXCITED:
         assert robot.modes is not None
@@ -176,7 +173,7 @@ def modes_on(robot: Robot, path: GeometricPath) -> tuple[int, ...]:
 
 
 @lru_cache(maxsize=16)
-def tables_of(robot: Robot, path: GeometricPath) -> Tables:
+def tables_of(robot: MovingRobot, path: GeometricPath) -> Tables:
     """The tables of a robot on a path; ValueError where a spring cannot carry its load."""
     reduction = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
     layout = _Layout(reduction.at(np.array([0.5])))
@@ -213,7 +210,7 @@ Groups = dict[str, dict[str, Array]]
 
 @lru_cache(maxsize=16)
 def variations_of(
-    robot: Robot, path: GeometricPath, names: tuple[str, ...]
+    robot: MovingRobot, path: GeometricPath, names: tuple[str, ...]
 ) -> dict[tuple[int, ...], Groups]:
     """What is added to the tables where multiples of `VARIED` are not 1.
 
@@ -269,7 +266,9 @@ def variations_of(
 
 
 @lru_cache(maxsize=64)
-def groups_at(robot: Robot, path: GeometricPath, errors: tuple[tuple[str, float], ...]) -> Groups:
+def groups_at(
+    robot: MovingRobot, path: GeometricPath, errors: tuple[tuple[str, float], ...]
+) -> Groups:
     """The tables where multiples of `VARIED` have these errors: as many numbers as of none."""
     groups = tables_of(robot, path).groups
     if not errors:

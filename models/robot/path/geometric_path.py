@@ -17,14 +17,14 @@ from numpy.typing import ArrayLike
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
 from quietarm.models.number_checks import listed, quoted
+from quietarm.models.robot.dynamics.kinematics import Pose
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.path.piecewise import NoFitError, Piecewise, fit, interpolate
-from quietarm.models.robot.path.straight_line import Pose, kinematics_of, straight_positions
+from quietarm.models.robot.path.straight_line import straight_positions
 from quietarm.models.robot.text_files import read_text, read_yaml
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
-
-    from quietarm.models.robot.robot import Robot
 
 BEYOND = 0.1
 """So much of a path is added at its ends, where a motion overshoots."""
@@ -114,7 +114,7 @@ class GeometricPath:
     @classmethod
     def cartesian_line(
         cls,
-        robot: Robot,
+        robot: MovingRobot,
         start: ArrayLike,
         *,
         to: ArrayLike | None = None,
@@ -153,7 +153,7 @@ class GeometricPath:
             )
         if (to is None) == (by is None):
             raise ValueError("a line has to end somewhere; give either to=, a pose, or by=, a way")
-        kinematics = kinematics_of(robot, link)
+        kinematics = robot.kinematics(link)
         before = kinematics.pose(positions)
         if by is not None:
             end = before.moved(_numbers("by", by, (3,), "x, y, z [m]"))

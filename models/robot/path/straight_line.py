@@ -3,98 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import has_no
-from quietarm.models.robot.frames import rotation_about, rotation_of
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.path.geometric_path import GeometricPath
-    from quietarm.models.robot.robot import Robot
+from quietarm.models.robot.dynamics.kinematics import Kinematics, Pose
+from quietarm.models.robot.frames import rotation_about
 
 LEAST_LENGTH = 1e-6
 """Of a line [m], or least turn [rad]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Pose:
-    """Where a link stands, seen from the ground: its rotation, shape (3, 3), and its origin [m]."""
-
-    rotation: Array
-    origin: Array
-
-    @classmethod
-    def of(cls, numbers: Array, before: Pose) -> Pose:
-        """By x, y, z [m], the rotation as before; or with roll, pitch, yaw [rad], as in a URDF."""
-        rotation = rotation_of(*numbers[3:]) if len(numbers) == 6 else before.rotation
-        return cls(rotation, numbers[:3])
-
-    def moved(self, way: Array) -> Pose:
-        """By a way in the frame of the ground [m], its rotation as before."""
-        return Pose(self.rotation, self.origin + way)
-
-
-@dataclass(frozen=True)
-class Kinematics:
-    """Where a link of a robot stands by the positions of its driven joints."""
-
-    robot: Robot
-    link: str
-
-    def pose(self, q: Array) -> Pose:
-        """Where the link stands."""
-        rotation, origin = (entry.full() for entry in self._place(q))
-        return Pose(rotation, origin.ravel())
-
-    def offset(self, q: Array, pose: Pose) -> tuple[Array, Array]:
-        """How far the link is from a pose [m, rad], six numbers, and their slopes by q."""
-        offset, slopes = self._offset(q, pose.rotation, pose.origin)
-        return offset.full().ravel(), slopes.full()
-
-    @cached_property
-    def _place(self) -> ca.Function:
-        q = ca.SX.sym("q", len(self.robot.joints))
-        return ca.Function("place", [q], [*self._symbols(q)], {"cse": True})
-
-    @cached_property
-    def _offset(self) -> ca.Function:
-        q = ca.SX.sym("q", len(self.robot.joints))
-        wanted = ca.SX.sym("rotation", 3, 3)
-        target = ca.SX.sym("origin", 3)
-        rotation, origin = self._symbols(q)
-        turned = wanted.T @ rotation
-        turns = ca.vertcat(
-            turned[2, 1] - turned[1, 2],
-            turned[0, 2] - turned[2, 0],
-            turned[1, 0] - turned[0, 1],
-        )
-        offset = ca.vertcat(origin - target, turns / 2)
-        slopes = ca.densify(ca.jacobian(offset, q))
-        return ca.Function("offset", [q, wanted, target], [offset, slopes], {"cse": True})
-
-    def _symbols(self, q: ca.SX) -> tuple[ca.SX, ca.SX]:
-        dynamics = self.robot.dynamics
-        place = self.robot.mechanism.links[self.link]
-        x = ca.vertcat(q, ca.SX(dynamics.sprung, 1))
-        rotation, origin = dynamics.place(place, x)
-        return ca.densify(rotation), ca.densify(origin)
-
-
-def kinematics_of(robot: Robot, link: str | None) -> Kinematics:
-    """Of a link; by default that which carries the beam, or else the tip."""
-    if link is None:
-        link = robot.beam.at if robot.beam is not None else robot.tip
-    assert link is not None
-    if link not in robot.mechanism.links:
-        raise ValueError(has_no("the robot", "link, for a line,", link, robot.mechanism.links))
-    return Kinematics(robot, link)
 
 
 def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Callable[[float], Array]:
@@ -158,7 +76,7 @@ _DEGREE = 16
 """Of the guess."""
 
 
-def off_straight(kinematics: Kinematics, path: GeometricPath) -> float:
+def off_straight(kinematics: Kinematics, path: Callable[[Array], Array]) -> float:
     """Largest distance of a link on a path from the straight line between the path's ends [m]."""
     origins = np.array([kinematics.pose(q).origin for q in path(np.linspace(0.0, 1.0, 501))])
     way = origins[-1] - origins[0]
