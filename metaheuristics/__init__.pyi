@@ -8,9 +8,9 @@ from .jobs import Job as Job
 from .jobs import LostJobsError as LostJobsError
 from .jobs import finished_jobs as finished_jobs
 from .jobs import run_jobs as run_jobs
+from .methods.preset import Preset as Preset
 from .methods.presets import PAPER_BOX as PAPER_BOX
 from .methods.presets import PRESETS as PRESETS
-from .methods.presets import Preset as Preset
 from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of

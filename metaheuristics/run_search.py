@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS, Preset, preset_of
+from quietarm.metaheuristics.methods.preset import Preset
+from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS, preset_of
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes, whole
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives

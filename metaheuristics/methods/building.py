@@ -1,58 +1,49 @@
-"""Build a method that is known by name."""
+"""How a method that is known by name is built of pymoo's parts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
-from importlib.util import find_spec
 from itertools import product
 from math import comb
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pymoo.core.algorithm import Algorithm
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
 from quietarm.metaheuristics.methods.settings import Value
 from quietarm.metaheuristics.thinning import farthest_apart
-from quietarm.ocp.checks import install
 
-if TYPE_CHECKING:
-    from quietarm.metaheuristics.methods.presets import Preset  # which loads this file late
+_OPERATORS: Mapping[str, Callable[..., Any]] = {
+    "crossover": SBX,
+    "mutation": PM,
+    "rule": VelocityRule,
+}
+"""Arguments of an algorithm that have arguments of their own."""
 
 
-def built(
-    preset: Preset, population: int, values: Mapping[str, Value], objectives: int
-) -> Algorithm | Callable[..., None]:
-    """A new algorithm for so many objectives, or a function with its settings.
+def with_arguments(kind: str, values: Mapping[str, Value]) -> Callable[..., Any]:
+    """A class or function, as ``module:name``, with values of its arguments.
 
-    Its operators are its own: those of pymoo's default arguments are shared, and some remember a
-    run.
+    Operators are made anew, of ``crossover.eta`` and the like: those of pymoo's default arguments
+    are shared, and some remember a run.
     """
-    operator_kinds: dict[str, Callable[..., Any]] = {
-        "crossover": SBX,
-        "mutation": PM,
-        "rule": VelocityRule,
-    }
-    if preset.needs and find_spec(preset.needs) is None:
-        raise ValueError(f"{preset.name} needs {preset.needs}; {install(preset.needs)}")
     arguments = dict[str, Any]()
     operators = dict[str, dict[str, Value]]()
-    for setting in preset.settings:
-        operator, dot, argument = setting.argument.partition(".")
-        target = operators.setdefault(operator, {}) if dot else arguments
-        target[argument if dot else operator] = values[setting.name]
-    arguments.update((name, operator_kinds[name](**options)) for name, options in operators.items())
-    module, _, kind = preset.kind.partition(":")
-    method = getattr(import_module(module), kind)
-    if preset.is_function:
-        return partial(method, **arguments)
-    first = directions(population, objectives) if preset.by_directions else population
-    return method(first, **arguments)
+    for name, value in values.items():
+        operator, dot, argument = name.partition(".")
+        if dot:
+            operators.setdefault(operator, {})[argument] = value
+        else:
+            arguments[name] = value
+    for operator, options in operators.items():
+        arguments[operator] = _OPERATORS[operator](**options)
+    module, _, name = kind.partition(":")
+    return partial(getattr(import_module(module), name), **arguments)
 
 
 def directions(number: int, objectives: int = 2) -> NDArray[np.float64]:
