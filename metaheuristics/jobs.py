@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
-from quietarm.metaheuristics.gradient import (
+from quietarm.metaheuristics.evaluation.noise import noise_share, times_evaluated
+from quietarm.metaheuristics.methods.gradient_methods import (
     GRADIENT,
     check_settings,
     gradient_front,
@@ -19,12 +19,8 @@ from quietarm.metaheuristics.gradient import (
     solver_with,
     split_solver_options,
 )
-from quietarm.metaheuristics.objective.noise import noise_share, times_evaluated
-from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
-from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
-from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
-from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
-from quietarm.metaheuristics.user_method import (
+from quietarm.metaheuristics.methods.presets import PRESETS, preset_of
+from quietarm.metaheuristics.methods.user_method import (
     Method,
     check_method,
     digest_of,
@@ -33,6 +29,10 @@ from quietarm.metaheuristics.user_method import (
     run_method,
     why_not_sent,
 )
+from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
+from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
+from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
+from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole, words_of_error
 from quietarm.ocp.objectives import refuse_more_objectives

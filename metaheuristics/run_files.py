@@ -8,8 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from quietarm.metaheuristics.algorithms.presets import PRESETS
-from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
+from quietarm.metaheuristics.methods.presets import PRESETS
 from quietarm.metaheuristics.score import HYPERVOLUME, filled, objectives
 from quietarm.ocp import Front, Mark
 from quietarm.ocp.saved import as_loaded, keeps_checksum, plain, read_document, stated_part

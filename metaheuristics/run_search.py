@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset, preset_of
+from quietarm.metaheuristics.methods.preset import Preset
+from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS, preset_of
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes, whole
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
@@ -318,8 +319,8 @@ def _of_user(
     """A copy of an algorithm that was given, and what it is set to."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
-    from quietarm.metaheuristics.algorithms.algorithm_settings import settings_of
-    from quietarm.metaheuristics.algorithms.user_algorithm import copy_of_algorithm
+    from quietarm.metaheuristics.methods.algorithm_settings import settings_of
+    from quietarm.metaheuristics.methods.user_algorithm import copy_of_algorithm
 
     value: Any = algorithm
     if inspect.isclass(value):

@@ -16,7 +16,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.objective.population import figures_of_motions
+from quietarm.metaheuristics.evaluation.population import figures_of_motions
 from quietarm.metaheuristics.thinning import MOST_POINTS, thinned
 from quietarm.ocp import Front, Mark
 from quietarm.ocp.checks import takes

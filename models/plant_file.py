@@ -14,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import words_of_error
+from quietarm.models.number_checks import words_of_error
 from quietarm.models.plant import Plant
 
 

@@ -22,9 +22,9 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models import at_rest
-from quietarm.models.checks import words_of_error
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array, Expression, JointMotion
+from quietarm.models.number_checks import words_of_error
 
 if TYPE_CHECKING:
     from quietarm.models.plant import Plant

@@ -15,7 +15,7 @@ from msgspec import Meta
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import (
+from quietarm.models.number_checks import (
     clipped,
     cut,
     finite,

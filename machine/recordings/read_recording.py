@@ -13,8 +13,8 @@ from quietarm.machine import Recording
 from quietarm.machine.recordings.recording import MOST_ANGLE
 from quietarm.machine.tables.column_units import UNITS, unknown_ending
 from quietarm.machine.tables.table import Table, read_table, unused_in_words
-from quietarm.models.checks import quoted
 from quietarm.models.joint_motion import ROTARY, joint_label
+from quietarm.models.number_checks import quoted
 from quietarm.ocp import FileFormatError
 
 Array = NDArray[np.float64]

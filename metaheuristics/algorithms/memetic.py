@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics.algorithms.array_algorithm import Array
 from quietarm.metaheuristics.algorithms.moead_de import ScaledMOEAD
-from quietarm.metaheuristics.objective.population import search_steps
+from quietarm.metaheuristics.evaluation.population import search_steps
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.ocp.cost import COST
 from quietarm.ocp.front.curve import Curve

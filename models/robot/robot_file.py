@@ -8,15 +8,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import clipped, has_no, listed, quoted
 from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
 from quietarm.models.notes import Note
-from quietarm.models.robot.beam import Beam
-from quietarm.models.robot.files import read_text, read_yaml
-from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.following import Following, bounds_of_leaders, followers_of
-from quietarm.models.robot.joint_limits import ByQuantity, JointLimits, read_joint_limits
-from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint, read_urdf
+from quietarm.models.number_checks import clipped, has_no, listed, quoted
+from quietarm.models.robot.elastic.beam import Beam
+from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
+from quietarm.models.robot.text_files import read_text, read_yaml
+from quietarm.models.robot.urdf.following import Following, bounds_of_leaders, followers_of
+from quietarm.models.robot.urdf.joint_limits import ByQuantity, JointLimits, read_joint_limits
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC, UrdfJoint, read_urdf
 from quietarm.models.units import parse_quantity
 
 Read = Callable[[Any, str], Any]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics import MoveFunction
-from quietarm.metaheuristics.objective.population import UNUSABLE
-from quietarm.metaheuristics.objective.stated_figures import FIGURES, agrees
+from quietarm.metaheuristics.evaluation.population import UNUSABLE
+from quietarm.metaheuristics.evaluation.stated_figures import FIGURES, agrees
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
 from quietarm.ocp.checks import whole
 from quietarm.ocp.front.points import refuse_beyond_box

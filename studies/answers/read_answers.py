@@ -10,7 +10,7 @@ from pathlib import Path
 
 import msgspec
 
-from quietarm.metaheuristics.objective.stated_figures import check_figures, check_plan
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures, check_plan
 from quietarm.ocp import FileFormatError, Front, Plan
 from quietarm.ocp.files import read_bytes
 from quietarm.ocp.saved import keeps_checksum

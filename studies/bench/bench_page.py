@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.objective.population import ACCURACY
+from quietarm.metaheuristics.evaluation.population import ACCURACY
 from quietarm.metaheuristics.score import HYPERVOLUME, INDICATORS, Indicator
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure

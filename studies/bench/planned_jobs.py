@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
-from quietarm.metaheuristics.gradient import GRADIENT
 from quietarm.metaheuristics.jobs import POLISH
+from quietarm.metaheuristics.methods.gradient_methods import GRADIENT
 from quietarm.ocp import Front
 from quietarm.ocp.checks import spelling, whole
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY

@@ -32,7 +32,7 @@ from quietarm.studies.bench.running_times import (
     running_times,
     write_histories,
 )
-from quietarm.views.report.methods import is_gradient, label_of, unpolished
+from quietarm.views.report.method_rows import is_gradient, label_of, unpolished
 
 Array = NDArray[np.float64]
 ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]

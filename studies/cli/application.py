@@ -70,7 +70,7 @@ class LazyGroup(click.Group):
 def command_of(name: str) -> click.Command:
     """A command by its name."""
     function = "list_" if name == "list" else name
-    return getattr(import_module(f"quietarm.studies.cli.commands.{function}"), function)
+    return getattr(import_module(f"quietarm.studies.cli.commands.{name}_command"), function)
 
 
 @click.group(

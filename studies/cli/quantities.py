@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from quietarm.machine.tables.column_units import OF_OPTIONS, normal
-from quietarm.metaheuristics.objective.noise import noise_share
+from quietarm.metaheuristics.evaluation.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY, joint_label, joint_unit

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
-from quietarm.models.robot.cartesian import kinematics_of, off_straight
-from quietarm.models.robot.urdf import PRISMATIC
+from quietarm.models.robot.path.straight_line import off_straight
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.models.units import parse_quantity
 from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.checks import listed
@@ -99,7 +99,7 @@ def line_note(given: Given, plant: RobotOnPath) -> str | None:
     """How straight the link goes for which a line was typed."""
     if given.line_to is None and given.line_by is None:
         return None
-    kinematics = kinematics_of(plant.robot, given.link)
+    kinematics = plant.robot.kinematics(given.link)
     off = off_straight(kinematics, plant.path)
     return f"line: {kinematics.link} goes straight within {max(1e3 * off, 1e-9):.1g} mm"
 

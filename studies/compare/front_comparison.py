@@ -21,7 +21,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.saved import plain
 from quietarm.studies.compare.staircase import best_of, evenly_spaced
-from quietarm.views.report.methods import is_gradient, label_of
+from quietarm.views.report.method_rows import is_gradient, label_of
 from quietarm.views.report.words import objective_words
 
 Array = NDArray[np.float64]

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import quietarm as qa
 from quietarm.metaheuristics import problem_of, run_jobs
 from quietarm.metaheuristics.archive import Archive, entering
+from quietarm.metaheuristics.evaluation.population import objectives_of, search_evaluator
 from quietarm.metaheuristics.jobs import Job
-from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
     INDICATORS,

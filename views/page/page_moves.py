@@ -20,7 +20,7 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.views.pictures import KnownPoint
-from quietarm.views.report.methods import described, is_gradient
+from quietarm.views.report.method_rows import described, is_gradient
 from quietarm.views.report.words import title_of_picture
 
 MOST_MOTIONS = 60

@@ -43,7 +43,7 @@ from quietarm.views.pictures.motion import (
     names_of_curves,
 )
 from quietarm.views.pictures.structure import Part, Structure, structures_of
-from quietarm.views.report.methods import label_of
+from quietarm.views.report.method_rows import label_of
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import counted, raised, window_words
 from quietarm.views.tips import tip_scale

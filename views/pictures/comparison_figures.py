@@ -31,7 +31,7 @@ from quietarm.views.pictures.axes import (
 )
 from quietarm.views.pictures.grammar import FAINT, FLOOR, PAPER, Look, looks
 from quietarm.views.pictures.marked_points import mark_points
-from quietarm.views.report.methods import with_kind
+from quietarm.views.report.method_rows import with_kind
 from quietarm.views.report.words import title_of_picture
 from quietarm.views.tips import tip_scale, tip_words
 

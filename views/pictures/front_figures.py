@@ -29,7 +29,7 @@ from quietarm.views.pictures.grammar import PALE, PLAN, RED, Look, looks, varian
 from quietarm.views.pictures.marked_points import mark_points
 from quietarm.views.pictures.surface_figures import draw_parallel, draw_peak
 from quietarm.views.report.captions import caption_of_fronts, caption_of_polish
-from quietarm.views.report.methods import described, is_gradient
+from quietarm.views.report.method_rows import described, is_gradient
 from quietarm.views.report.words import spread_words, title_of_picture
 from quietarm.views.tips import tip_scale, tip_words
 

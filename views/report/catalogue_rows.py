@@ -13,7 +13,7 @@ from quietarm.models import Plant
 from quietarm.ocp.checks import spelling, unknown
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import ENERGY, OBJECTIVES
-from quietarm.views.report.methods import GRADIENT_LABELS, label_of
+from quietarm.views.report.method_rows import GRADIENT_LABELS, label_of
 from quietarm.views.report.words import error_words, objective_words, window_words
 
 Row = tuple[str, str]

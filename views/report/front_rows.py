@@ -7,7 +7,7 @@ from math import isfinite
 
 import numpy as np
 
-from quietarm.metaheuristics.objective.noise import belief_of
+from quietarm.metaheuristics.evaluation.noise import belief_of
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
 from quietarm.ocp import Candidate, CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
 from quietarm.ocp.front.curve import RESIDUAL_LIMIT

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import quietarm as qa
-from quietarm.metaheuristics.gradient import gradient_front
+from quietarm.metaheuristics.methods.gradient_methods import gradient_front
 from quietarm.models import Expression
 from quietarm.ocp.front.points import LEVELS, Mark
 from quietarm.ocp.profiles.cycloid import Cycloid

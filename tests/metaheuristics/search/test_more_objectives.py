@@ -15,9 +15,9 @@ from small_searches import SIXTH, exactly
 
 import quietarm as qa
 from quietarm.metaheuristics import PRESETS, Job, problem_of
-from quietarm.metaheuristics.algorithms.building import directions
 from quietarm.metaheuristics.archive import Archive, entering
-from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
+from quietarm.metaheuristics.methods.building import directions
 from quietarm.metaheuristics.score import CORNER, Scale, hypervolume, share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import CycloidPolynomial

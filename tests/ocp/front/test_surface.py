@@ -9,7 +9,7 @@ from moves import CASES
 
 import quietarm as qa
 from quietarm.metaheuristics import MoveFunction
-from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
 from quietarm.ocp import (
     CycloidPolynomial,
     Front,

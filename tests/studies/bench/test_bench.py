@@ -13,7 +13,7 @@ from bench_problems import NAME, OTHERS
 
 import quietarm as qa
 from quietarm.metaheuristics import problem_of
-from quietarm.metaheuristics.objective.population import ACCURACY
+from quietarm.metaheuristics.evaluation.population import ACCURACY
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.metaheuristics.score import CORNER, INDICATORS
 from quietarm.ocp.cost import COST

@@ -18,7 +18,7 @@ from rich.console import Console
 from scipy.io import loadmat
 
 import quietarm as qa
-from quietarm.models.robot.urdf import read_urdf
+from quietarm.models.robot.urdf.read_urdf import read_urdf
 from quietarm.ocp.escapes import c_comment, csv_table, markdown, one_line, printable
 from quietarm.studies.explore.move import Explored
 from quietarm.studies.explore.page import _facts

@@ -3,7 +3,7 @@
 import pytest
 
 from quietarm.studies.bench.results import derivative_free
-from quietarm.views.report.methods import is_gradient, label_of
+from quietarm.views.report.method_rows import is_gradient, label_of
 
 
 @pytest.mark.parametrize(
