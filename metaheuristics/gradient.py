@@ -21,7 +21,7 @@ from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
-from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
+from quietarm.ocp.solvers.solver import NAME, Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
 
@@ -66,8 +66,6 @@ GRADIENT = tuple(
     name if solver == Sqp.name else f"{name}:{solver}" for name in _FRONTS for solver in SOLVERS
 )
 """Names of the methods of the gradient; without a solver it is the own SQP."""
-SOLVER_OPTIONS = tuple(f"{NAME}_{option}" for option in OPTIONS)
-"""Settings of a method that are options of its solver."""
 
 
 def gradient_front(
@@ -91,7 +89,7 @@ def gradient_front(
         refuse_more_objectives(name, objectives)
         options_of_problem["objectives"] = objectives
     find, _ = _FRONTS[name]
-    options, method_settings = split_solver_options(settings)
+    options, method_settings = split_solver_options(settings, solver_name)
     solver = solver_with(options, solver_name)
     before = COST.copy()
     began = time.thread_time()
@@ -109,24 +107,30 @@ def gradient_front(
 
 def check_settings(method: str, settings: Mapping[str, Any]) -> None:
     """Refuse settings that a method of `GRADIENT` does not have, or that are out of range."""
-    options, method_settings = split_solver_options(settings)
+    way, _, solver_name = method.partition(":")
+    options, method_settings = split_solver_options(settings, solver_name)
     checks = {"points": number_of_points, "starts": number_of_starts}
-    _, size = _FRONTS[method.partition(":")[0]]
+    _, size = _FRONTS[way]
     for name, value in method_settings.items():
         if name != size:
-            raise ValueError(has_no(method, "setting", name, [size, *SOLVER_OPTIONS]))
+            known = [size, *solver_settings(solver_name)]
+            raise ValueError(has_no(method, "setting", name, known))
         checks[name](value)
-    solver_with(options)
+    solver_with(options, solver_name)
+
+
+def solver_settings(solver: str = "") -> list[str]:
+    """Settings of a method that are options of its solver, by default of the own SQP."""
+    return [entry.setting for entry in SOLVERS[solver or Sqp.name].stated_options()]
 
 
 def split_solver_options(
-    settings: Mapping[str, Any],
+    settings: Mapping[str, Any], solver: str = ""
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Options of a method's solver, as solver_tolerance, and the method's other settings."""
-    options = {name: value for name, value in settings.items() if name in SOLVER_OPTIONS}
-    method_settings = {
-        name: value for name, value in settings.items() if name not in SOLVER_OPTIONS
-    }
+    names = solver_settings(solver)
+    options = {name: value for name, value in settings.items() if name in names}
+    method_settings = {name: value for name, value in settings.items() if name not in names}
     return options, method_settings
 
 

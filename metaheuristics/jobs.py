@@ -168,7 +168,7 @@ class Job:
         }
         if budget is None:
             if rehearse:
-                settings = {"starts" if "multistart" in method else "points": rehearsal}
+                settings["starts" if "multistart" in method else "points"] = rehearsal
             return gradient_front(
                 problem.task,
                 method=method,

@@ -20,12 +20,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.solvers.quadratic import Model, Multipliers, Steps, convexify, least_steps
+
+if TYPE_CHECKING:
+    from quietarm.ocp.solvers.sqp import Sqp
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -82,16 +85,15 @@ class End(Enum):
 class Course(NamedTuple):
     """How rows are led to their minima.
 
-    The objective is smoothed over the widths, one after another, the last of them 0. Trust regions
-    have the radius `reach` at first. A row is solved where the model promises less than the
-    `tolerance`, as a share of f; it has at most so many iterations. With a `log` each is a line.
+    By the options of a solver: a row is solved where the model promises less than its tolerance, as
+    a share of f; it has at most so many iterations, and with a log each is a line. The objective is
+    smoothed over the widths, one after another, the last of them 0. Trust regions have the radius
+    `reach` at first.
     """
 
+    solver: Sqp
     widths: tuple[float, ...] = WIDTHS
     reach: float = 0.25
-    tolerance: float = 1e-9
-    iterations: int = 500
-    log: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,9 +113,9 @@ class Ended:
 def minimise(
     programs: RowPrograms,
     x: Array,
+    course: Course,
     *,
     groups: Index | None = None,
-    course: Course | None = None,
 ) -> Ended:
     """Minimise every row from its start.
 
@@ -123,20 +125,20 @@ def minimise(
         What is minimised. The linear entries of v are within their bounds from the start on.
     x : ndarray, shape (rows, n)
         The starts.
+    course : Course
+        How they are led.
     groups : ndarray, shape (rows,), optional
         Rows of one number are starts of one program: once half of them, and more than one, agree on
         the least f, the others are stopped.
-    course : Course, optional
-        How they are led.
     """
-    course = course or Course()
+    solver = course.solver
     descent = _Descent(programs, x, groups, course)
-    if course.log:
+    if solver.log:
         print("iter  starts   objective  violation     radius  smoothing")
-    for number in range(course.iterations):
+    for number in range(solver.iterations):
         if not len(descent.going):
             break
-        if course.log:
+        if solver.log:
             print(descent.log_line(number))
         descent.iterate()
     ends = [End.UNFINISHED if end is None else end for end in descent.ends]
@@ -208,7 +210,7 @@ class _Descent:
         self.x = x.copy()
         self.groups = groups
         self.widths = np.array(course.widths)
-        self.tolerance = course.tolerance
+        self.tolerance = course.solver.tolerance
         rows, bounded = programs.lower.shape
         self.going = np.arange(rows)
         self.stage = np.zeros(rows, dtype=int)

@@ -109,7 +109,19 @@ class Given:
 
     def read_solver(self) -> Solver:
         """The solver that was typed, with its options: the one place where commands make it."""
-        return SOLVERS[self.solver](tolerance=self.tolerance)
+        chosen = SOLVERS[self.solver]
+        own = {entry.name for entry in chosen.stated_options()}
+        typed = dict[str, Any]()
+        for kind in SOLVERS.values():
+            for entry in kind.stated_options():
+                value = self._context.params[entry.name]
+                if value is None:
+                    continue
+                if entry.name not in own:
+                    others = f"is an option of {kind.name}, and the solver is {chosen.name}"
+                    self.refuse([entry.name], others)
+                typed[entry.name] = value
+        return chosen(**typed)
 
     def read_profile(self, task: PointToPoint) -> JointProfile:
         """The joint profile; hours of solves from all starts, for all points, are refused."""
