@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 from itertools import product
 from numbers import Real
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import casadi as ca
 import numpy as np
@@ -71,6 +71,9 @@ from quietarm.models.robot.tables import (
 )
 from quietarm.models.robot.urdf import PRISMATIC, Urdf, read_urdf
 from quietarm.models.robot.urdf_text import as_read_before, dynamics_of
+
+if TYPE_CHECKING:
+    from quietarm.ocp import PointToPoint
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2], of the SI."""
@@ -227,6 +230,18 @@ class Robot:
             When the path has other joints, leaves their ranges, or a spring cannot carry its load.
         """
         return RobotOnPath(robot=self, path=path)
+
+    def task(self, path: GeometricPath, duration: float, **others: Any) -> PointToPoint:
+        """The move along a path within the robot's limits; other keywords of `PointToPoint`.
+
+        A limit that is given is in the place of the robot's own of that quantity.
+
+        Raises
+        ------
+        ValueError
+            As of `along` and of `PointToPoint`.
+        """
+        return self.along(path).task(1.0, duration, **others)
 
     @classmethod
     def of_saved(cls, entries: Any) -> Any:
@@ -621,6 +636,11 @@ class RobotOnPath(Plant):
     def notes(self) -> tuple[Note, ...]:
         """What the robot's files leave open or have wrong."""
         return self.robot.notes
+
+    @property
+    def limits(self) -> Limits:
+        """The robot's, of its joints."""
+        return self.robot.limits
 
     @property
     def followers(self) -> Mapping[str, tuple[int, Following]]:
