@@ -151,7 +151,7 @@ def minimise(
     )
 
 
-class _Attempt(NamedTuple):
+class _TriedSteps(NamedTuple):
     """A step of each row that is going, and what comes of it.
 
     `promised` is the descent of the quadratic model, `sharper` whether the row goes on to the next
@@ -261,7 +261,7 @@ class _Descent:
         last = ~attempt.sharper & (self.width(rows) == 0)
         self._end(small & last & (self.violation[rows] <= self.met))
 
-    def _attempt(self, hessian: Array) -> _Attempt:
+    def _attempt(self, hessian: Array) -> _TriedSteps:
         """The step of least quadratic model, and whether it is accepted."""
         rows = self.going
         model = self.model
@@ -285,7 +285,7 @@ class _Descent:
             good,
         )
         for_f = (promised > self.switch * self.violation[rows] ** 2) & ~sharper
-        return _Attempt(step, promised, sharper, trial, for_f, good)
+        return _TriedSteps(step, promised, sharper, trial, for_f, good)
 
     def _sharper(self, step: Steps, promised: Array) -> Flags:
         """Which rows go on to the next stage with this step."""
@@ -337,7 +337,7 @@ class _Descent:
             good = np.where(step.met[places], good, restores)
         return good & np.isfinite(trial.objective) & np.isfinite(after)
 
-    def _correct(self, hessian: Array, attempt: _Attempt) -> None:
+    def _correct(self, hessian: Array, attempt: _TriedSteps) -> None:
         """Second-order corrections of the steps that are not good."""
         step = attempt.step
         trial = attempt.trial
@@ -367,7 +367,7 @@ class _Descent:
         step.d[again[better]] = corrected.d[better]
         trial.put(again[better], second.take(better))
 
-    def _resize(self, attempt: _Attempt, at_side: Flags) -> None:
+    def _resize(self, attempt: _TriedSteps, at_side: Flags) -> None:
         """Trust regions that shrink to where a parabola through f has its least, or grow."""
         good = attempt.good
         for_f = attempt.for_f
@@ -383,7 +383,7 @@ class _Descent:
         following = np.where(growing, self.grow * radius, following)
         self.radius[self.going] = np.where(good, following, np.minimum(shrunk, radius))
 
-    def _move(self, attempt: _Attempt) -> None:
+    def _move(self, attempt: _TriedSteps) -> None:
         """Take the good steps."""
         rows = self.going
         good = attempt.good
