@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from quietarm.metaheuristics.archive import search_versions
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
 from quietarm.ocp.checks import has_no, whole
 from quietarm.ocp.cost import COST, Cost
@@ -61,36 +62,31 @@ _FRONTS: Mapping[str, tuple[Callable[..., Front], str]] = {
     "weighted": (weighted_front, "points"),
     "multistart": (multistart_front, "starts"),
 }
-"""By name, and what each may be set to."""
-GRADIENT = tuple(
-    name if solver == Sqp.name else f"{name}:{solver}" for name in _FRONTS for solver in SOLVERS
-)
-"""Names of the methods of the gradient; without a solver it is the own SQP."""
+"""By name of `BY_GRADIENT`, and what each may be set to."""
 
 
 def gradient_front(
     task: PointToPoint,
     profile: JointProfile,
-    method: str,
+    method: NamedMethod,
     *,
     bound: float,
     seed: int,
     settings: Mapping[str, Any],
     objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> Front:
-    """The front of a method of `GRADIENT`, with its cost as its only mark.
+    """The front of a method by the gradient, with its cost as its only mark.
 
     ValueError where there are peaks among the objectives and it is not the epsilon-constraint.
     """
-    name, _, solver_name = method.partition(":")
     check_settings(method, settings)
     options_of_problem: dict[str, Any] = {}
     if tuple(objectives) != RESIDUAL_AND_ENERGY:
-        refuse_more_objectives(name, objectives)
+        refuse_more_objectives(method.method, objectives)
         options_of_problem["objectives"] = objectives
-    find, _ = _FRONTS[name]
-    options, method_settings = split_solver_options(settings, solver_name)
-    solver = solver_with(options, solver_name)
+    find, _ = _FRONTS[method.method]
+    options, method_settings = split_solver_options(settings, method.solver)
+    solver = solver_with(options, method.solver)
     before = COST.copy()
     began = time.thread_time()
     front = find(
@@ -102,21 +98,20 @@ def gradient_front(
         **method_settings,
         **options_of_problem,
     )
-    return _with_cost(front.restated(method=method), before, began)
+    return _with_cost(front.restated(method=str(method)), before, began)
 
 
-def check_settings(method: str, settings: Mapping[str, Any]) -> None:
-    """Refuse settings that a method of `GRADIENT` does not have, or that are out of range."""
-    way, _, solver_name = method.partition(":")
-    options, method_settings = split_solver_options(settings, solver_name)
+def check_settings(method: NamedMethod, settings: Mapping[str, Any]) -> None:
+    """Refuse settings that a method by the gradient does not have, or that are out of range."""
+    options, method_settings = split_solver_options(settings, method.solver)
     checks = {"points": number_of_points, "starts": number_of_starts}
-    _, size = _FRONTS[way]
+    _, size = _FRONTS[method.method]
     for name, value in method_settings.items():
         if name != size:
-            known = [size, *solver_settings(solver_name)]
-            raise ValueError(has_no(method, "setting", name, known))
+            known = [size, *solver_settings(method.solver)]
+            raise ValueError(has_no(str(method), "setting", name, known))
         checks[name](value)
-    solver_with(options, solver_name)
+    solver_with(options, method.solver)
 
 
 def solver_settings(solver: str = "") -> list[str]:
@@ -143,7 +138,7 @@ def polished(front: Front, solver: Solver = Sqp()) -> Front:
     """The front of a search, each point improved at its own residual; one mark more."""
     before = COST.copy()
     began = time.thread_time()
-    method = f"{front.record.method}+polish"
+    method = str(NamedMethod.read(front.record.method).polished())
     if not front.points:
         return front.restated(method=method)
     better = polish_front(front, solver=solver).front
