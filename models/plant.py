@@ -14,7 +14,7 @@ from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, ClassVar, Protocol, final
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, final
 
 import casadi as ca
 import numpy as np
@@ -24,6 +24,9 @@ from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
 from quietarm.models.notes import Note
 from quietarm.models.validation import check_contract, check_passive
+
+if TYPE_CHECKING:
+    from quietarm.ocp import PointToPoint
 
 COUNT = "count"
 """Unit of a parameter that is a whole number."""
@@ -306,6 +309,24 @@ class Plant(ABC):
     def parameter_fields(cls) -> tuple[Field[Any], ...]:
         """The fields that are parameters: all but `content`."""
         return tuple(entry for entry in fields(cls) if "content" not in entry.metadata)
+
+    @property
+    def limits(self) -> Mapping[str, Any]:
+        """Limits that its tasks have, by quantity, as {"speed": 3.0}, or by joint; none by default.
+
+        Each is as of `PointToPoint`.
+        """
+        return {}
+
+    @final
+    def task(self, target: float, duration: float, **others: Any) -> PointToPoint:
+        """The move to a target within the plant's own limits; other keywords of `PointToPoint`.
+
+        A limit that is given is in the place of the plant's own of that quantity.
+        """
+        import quietarm  # the name over all packages: models know of tasks what they are called
+
+        return quietarm.PointToPoint.of(self, target, duration, **others)
 
     @property
     def measured(self) -> dict[str, float]:

@@ -40,16 +40,16 @@ Progress = Callable[[int, int], object]
 
 
 @dataclass(frozen=True, eq=False)
-class Figures:
+class PlantFigures:
     """F1 [m], F2 [J] and peak torque [N m] at the nodes of the steps: an entry for each plant."""
 
     residual: Array
     energy: Array
     peak_torque: Array
 
-    def take(self, rows: slice) -> Figures:
+    def take(self, rows: slice) -> PlantFigures:
         """Those of some plants."""
-        return Figures(self.residual[rows], self.energy[rows], self.peak_torque[rows])
+        return PlantFigures(self.residual[rows], self.energy[rows], self.peak_torque[rows])
 
 
 def _along_errors(
@@ -57,7 +57,7 @@ def _along_errors(
     ranges: Mapping[str, float],
     errors: Array,
     report: Progress | None = None,
-) -> Figures:
+) -> PlantFigures:
     """Figures on plants with errors of shape (plants, ranges), within the ranges."""
     faster = 1 + max(ranges.values())  # any of them may be a frequency
     nominal_steps = default_steps(candidate.task.certain, least=1)
@@ -75,7 +75,7 @@ def _along_errors(
         peak_torques.append(evaluation.largest("torque")[0])
         if report is not None:
             report(first + len(block), len(errors))
-    return Figures(
+    return PlantFigures(
         residual=np.concatenate(residuals),
         energy=np.concatenate(energies),
         peak_torque=np.concatenate(peak_torques),
@@ -231,7 +231,7 @@ class Sweep:
         ``"frequency"``, ``"damping"`` or a parameter.
     errors : ndarray, shape (errors,)
         Relative errors, even from minus to plus the range; 0 in the middle.
-    figures : Figures
+    figures : PlantFigures
         Residual, energy and peak torque at each.
     insensitivity : tuple of float, or None
         The errors around 0 between which the residual stays within `Robustness.tolerated`, or the
@@ -240,7 +240,7 @@ class Sweep:
 
     name: str
     errors: Array
-    figures: Figures
+    figures: PlantFigures
     insensitivity: tuple[float, float] | None
 
     @property
@@ -266,10 +266,10 @@ class Robustness:
 
     ranges: Mapping[str, float]
     cycloid: float
-    assumed: Figures
+    assumed: PlantFigures
     sweeps: tuple[Sweep, ...]
     errors: Array
-    samples: Figures
+    samples: PlantFigures
     seed: int
 
     @property
@@ -352,7 +352,7 @@ def evaluate_robustness(
     )
 
 
-def _sweep(name: str, errors: Array, figures: Figures, tolerated: float) -> Sweep:
+def _sweep(name: str, errors: Array, figures: PlantFigures, tolerated: float) -> Sweep:
     """The sweep, with the errors around 0 between which the residual is tolerated."""
     excess = figures.residual - tolerated
     within = None

@@ -125,6 +125,7 @@ def _named(value: Any) -> dict[str, Any]:
 
 def typed(document: Any, kind: type[T]) -> T:
     """The value of a document; ValueError where an entry is missing, unknown or not of its kind."""
+    document = _as_meant(document, kind)
     try:
         value = msgspec.convert(document, kind, dec_hook=_known_here)
     except msgspec.ValidationError as error:
@@ -189,7 +190,7 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
     entries = [entry for entry in dataclasses.fields(kind) if "content" in entry.metadata]
     classes = get_type_hints(kind) if entries else {}
     content = {
-        entry.name: typed(_as_meant(table[entry.name], classes[entry.name]), classes[entry.name])
+        entry.name: typed(table[entry.name], classes[entry.name])
         for entry in entries
         if entry.name in table
     }
@@ -197,7 +198,7 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _as_meant(document: Any, kind: type[Any]) -> Any:
-    """What a file has of a part of a plant, by the part's `of_saved` where it has changed since."""
+    """What a file has of a value, by the `of_saved` of its class where that has changed since."""
     of_saved = getattr(kind, "of_saved", None)
     return document if of_saved is None else of_saved(document)
 

@@ -145,6 +145,26 @@ class PointToPoint:
     uncertainty: Uncertainty | None = None
     torque_speed: tuple[tuple[float, float], ...] | None = None
 
+    @classmethod
+    def of(cls, plant: Plant, target: float, duration: float, **others: Any) -> PointToPoint:
+        """The move of a plant within limits of its own, `Plant.limits`; with other keywords.
+
+        A limit that is given is in the place of the plant's own of that quantity, and None is none.
+
+        Raises
+        ------
+        ValueError
+            As of the class, and when the plant has a limit of something else.
+        """
+        instance("plant", plant, Plant)
+        own = dict[str, Any]()
+        for name, bounds in plant.limits.items():
+            if name not in QUANTITIES:
+                raise ValueError(has_no(plant.name, "limit of", name, QUANTITIES))
+            if bounds:
+                own[QUANTITIES[name].limit] = bounds
+        return cls(plant, target, duration, **{**own, **others})
+
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
             known_plants()  # so that each is known by its name

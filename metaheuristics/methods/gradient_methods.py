@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from quietarm.metaheuristics.archive import search_versions
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
 from quietarm.ocp.checks import has_no, whole
 from quietarm.ocp.cost import COST, Cost
@@ -21,7 +22,7 @@ from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
-from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
+from quietarm.ocp.solvers.solver import NAME, Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
 
@@ -61,38 +62,31 @@ _FRONTS: Mapping[str, tuple[Callable[..., Front], str]] = {
     "weighted": (weighted_front, "points"),
     "multistart": (multistart_front, "starts"),
 }
-"""By name, and what each may be set to."""
-GRADIENT = tuple(
-    name if solver == Sqp.name else f"{name}:{solver}" for name in _FRONTS for solver in SOLVERS
-)
-"""Names of the methods of the gradient; without a solver it is the own SQP."""
-SOLVER_OPTIONS = tuple(f"{NAME}_{option}" for option in OPTIONS)
-"""Settings of a method that are options of its solver."""
+"""By name of `BY_GRADIENT`, and what each may be set to."""
 
 
 def gradient_front(
     task: PointToPoint,
     profile: JointProfile,
-    method: str,
+    method: NamedMethod,
     *,
     bound: float,
     seed: int,
     settings: Mapping[str, Any],
     objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
 ) -> Front:
-    """The front of a method of `GRADIENT`, with its cost as its only mark.
+    """The front of a method by the gradient, with its cost as its only mark.
 
     ValueError where there are peaks among the objectives and it is not the epsilon-constraint.
     """
-    name, _, solver_name = method.partition(":")
     check_settings(method, settings)
     options_of_problem: dict[str, Any] = {}
     if tuple(objectives) != RESIDUAL_AND_ENERGY:
-        refuse_more_objectives(name, objectives)
+        refuse_more_objectives(method.method, objectives)
         options_of_problem["objectives"] = objectives
-    find, _ = _FRONTS[name]
-    options, method_settings = split_solver_options(settings)
-    solver = solver_with(options, solver_name)
+    find, _ = _FRONTS[method.method]
+    options, method_settings = split_solver_options(settings, method.solver)
+    solver = solver_with(options, method.solver)
     before = COST.copy()
     began = time.thread_time()
     front = find(
@@ -104,29 +98,34 @@ def gradient_front(
         **method_settings,
         **options_of_problem,
     )
-    return _with_cost(front.restated(method=method), before, began)
+    return _with_cost(front.restated(method=str(method)), before, began)
 
 
-def check_settings(method: str, settings: Mapping[str, Any]) -> None:
-    """Refuse settings that a method of `GRADIENT` does not have, or that are out of range."""
-    options, method_settings = split_solver_options(settings)
+def check_settings(method: NamedMethod, settings: Mapping[str, Any]) -> None:
+    """Refuse settings that a method by the gradient does not have, or that are out of range."""
+    options, method_settings = split_solver_options(settings, method.solver)
     checks = {"points": number_of_points, "starts": number_of_starts}
-    _, size = _FRONTS[method.partition(":")[0]]
+    _, size = _FRONTS[method.method]
     for name, value in method_settings.items():
         if name != size:
-            raise ValueError(has_no(method, "setting", name, [size, *SOLVER_OPTIONS]))
+            known = [size, *solver_settings(method.solver)]
+            raise ValueError(has_no(str(method), "setting", name, known))
         checks[name](value)
-    solver_with(options)
+    solver_with(options, method.solver)
+
+
+def solver_settings(solver: str = "") -> list[str]:
+    """Settings of a method that are options of its solver, by default of the own SQP."""
+    return [entry.setting for entry in SOLVERS[solver or Sqp.name].stated_options()]
 
 
 def split_solver_options(
-    settings: Mapping[str, Any],
+    settings: Mapping[str, Any], solver: str = ""
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Options of a method's solver, as solver_tolerance, and the method's other settings."""
-    options = {name: value for name, value in settings.items() if name in SOLVER_OPTIONS}
-    method_settings = {
-        name: value for name, value in settings.items() if name not in SOLVER_OPTIONS
-    }
+    names = solver_settings(solver)
+    options = {name: value for name, value in settings.items() if name in names}
+    method_settings = {name: value for name, value in settings.items() if name not in names}
     return options, method_settings
 
 
@@ -139,7 +138,7 @@ def polished(front: Front, solver: Solver = Sqp()) -> Front:
     """The front of a search, each point improved at its own residual; one mark more."""
     before = COST.copy()
     began = time.thread_time()
-    method = f"{front.record.method}+polish"
+    method = str(NamedMethod.read(front.record.method).polished())
     if not front.points:
         return front.restated(method=method)
     better = polish_front(front, solver=solver).front

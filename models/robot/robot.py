@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from numbers import Real
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -40,6 +40,7 @@ from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.dynamics.robot_parts import Limits
 from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
@@ -65,6 +66,9 @@ from quietarm.models.robot.robot_notes import notes_of, notes_of_text
 from quietarm.models.robot.text_files import read_text
 from quietarm.models.robot.urdf.following import Following, mimics_nothing
 from quietarm.models.robot.urdf.urdf_text import as_read_before, dynamics_of
+
+if TYPE_CHECKING:
+    from quietarm.ocp import PointToPoint
 
 _MOST_MOVING = 100
 """Joints, whose equations are written in two seconds."""
@@ -195,6 +199,18 @@ class Robot(MovingRobot):
             When the path has other joints, leaves their ranges, or a spring cannot carry its load.
         """
         return RobotOnPath(robot=self, path=path)
+
+    def task(self, path: GeometricPath, duration: float, **others: Any) -> PointToPoint:
+        """The move along a path within the robot's limits; other keywords of `PointToPoint`.
+
+        A limit that is given is in the place of the robot's own of that quantity.
+
+        Raises
+        ------
+        ValueError
+            As of `along` and of `PointToPoint`.
+        """
+        return self.along(path).task(1.0, duration, **others)
 
     @classmethod
     def of_saved(cls, entries: Any) -> Any:
@@ -501,6 +517,11 @@ class RobotOnPath(Plant):
     def notes(self) -> tuple[Note, ...]:
         """What the robot's files leave open or have wrong."""
         return self.robot.notes
+
+    @property
+    def limits(self) -> Limits:
+        """The robot's, of its joints."""
+        return self.robot.limits
 
     @property
     def followers(self) -> Mapping[str, tuple[int, Following]]:

@@ -110,7 +110,7 @@ def _least_residual(request: PlanRequest, starts: list[Array]) -> float | None:
     return stillest.residual if stillest.status.solved else None
 
 
-class _Attempt(NamedTuple):
+class _PlanAndPeaks(NamedTuple):
     """A plan; all motions that were solved, cheapest first; peaks between the scenarios."""
 
     plan: Plan
@@ -166,10 +166,10 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
     return plan.with_entries(residual_limit=limit)
 
 
-def _solve_and_look_between(request: PlanRequest, starts: list[Array]) -> _Attempt:
+def _solve_and_look_between(request: PlanRequest, starts: list[Array]) -> _PlanAndPeaks:
     """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
     plan, solved = plan_from_starts(request, starts)
-    return _Attempt(plan, solved, list(plan.peaks))
+    return _PlanAndPeaks(plan, solved, list(plan.peaks))
 
 
 def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:

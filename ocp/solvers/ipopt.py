@@ -34,7 +34,7 @@ from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.sample import total
 from quietarm.ocp.simulation.objective import integrated, smooth_power
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
-from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, shadow_prices
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.uncertainty import Scenario
@@ -76,6 +76,15 @@ class Ipopt(Solver):
     """
 
     name: ClassVar[str] = "ipopt"
+
+    @property
+    def own_options(self) -> dict[str, str | int | float]:
+        """What IPOPT is told of these options, by its own names."""
+        return {
+            "tol": self.tolerance,
+            "max_iter": self.iterations,
+            "print_level": 5 if self.log else 0,  # 5 has a line for each iteration
+        }
 
     @on_one_thread
     def solve(
@@ -175,7 +184,7 @@ def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: boo
     }
     options = {
         **(_WARM if warm else _OPTIONS),
-        **options_of(solver),
+        **solver.own_options,
         "acceptable_obj_change_tol": solver.tolerance / 10,
     }
     compiled_solver = compile_nlp(nlp, options)

@@ -49,12 +49,10 @@ class Sqp(Solver):
         """Solve each problem from its start; see `Solver.solve`."""
         solutions: dict[int, Solution] = {}
         course = Course(
+            self,
             widths=SHARP if warm else WIDTHS,
             # Minima of the paper's conditions lie within 0.2 of the cycloid.
             reach=0.02 if warm else 0.25,
-            tolerance=self.tolerance,
-            iterations=self.iterations,
-            log=self.log,
         )
         for places in _group_by_form(problems):
             alike = [problems[i] for i in places]
@@ -65,8 +63,8 @@ class Sqp(Solver):
             ended = minimise(
                 programs,
                 x,
+                course,
                 groups=None if groups is None else np.array([groups[i] for i in places]),
-                course=course,
             )
             solutions.update(zip(places, _in_units(programs, ended, alike)))
         return [solutions[i] for i in range(len(problems))]

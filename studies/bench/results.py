@@ -13,6 +13,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics import Job, NamedProblem
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
@@ -32,7 +33,7 @@ from quietarm.studies.bench.running_times import (
     running_times,
     write_histories,
 )
-from quietarm.views.report.method_rows import is_gradient, label_of, unpolished
+from quietarm.views.report.method_rows import label_of
 
 Array = NDArray[np.float64]
 ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
@@ -326,8 +327,8 @@ def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
 
 def derivative_free(method: str) -> bool:
     """Whether all of a method's work is candidates simulated without derivatives."""
-    name = method.partition("(")[0]
-    return not is_gradient(method) and unpolished(name) == name
+    named = NamedMethod.read(method)
+    return not (named.by_gradient or named.polish)
 
 
 bench_label = partial(label_of, solver="sqp")

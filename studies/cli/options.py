@@ -6,8 +6,9 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 from rich.console import Console
@@ -19,7 +20,7 @@ from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.named_profiles import POLYNOMIAL, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
-from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.solver import Option, Solver
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
@@ -29,9 +30,10 @@ from quietarm.studies.cli.quantities import (
     parse_objectives,
     parse_share_of_work,
     parse_state,
+    parse_usual,
     parse_workers,
 )
-from quietarm.studies.cli.types import INPUT, SETTING, SHARE, TIME, Named, Parsed
+from quietarm.studies.cli.types import INPUT, SETTING, TIME, Named, Parsed
 from quietarm.views.report.progress import count, working
 from quietarm.views.report.saving import STDOUT
 
@@ -166,13 +168,48 @@ RESIDUAL_LIMIT = option("--residual-limit", metavar="LENGTH", help="Largest tip 
                         "largest deflection, or less]")  # fmt: skip
 SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
 STARTS = option("--starts", default=4, help="Starts of the solver.")
-SOLVER = (
-    option("--solver", type=Named("solver", SOLVERS), default=next(iter(SOLVERS)),
-           help="Sequential quadratic programs (quietarm's own, fast), or IPOPT."),
-    option("--tolerance", type=SHARE, default=f"{Solver.tolerance:g}",
-           help="Share of the least energy that the solver may leave, of every solve; limits and "
-           "rest on arrival are kept as exactly as ever."),
-)  # fmt: skip
+
+
+def solver_options(solvers: Mapping[str, type[Solver]] = SOLVERS) -> tuple[click.Option, ...]:
+    """--solver, and an option for each that one of them has: their fields say all of it."""
+    entries: dict[str, dict[str, Option]] = {}
+    for name, kind in solvers.items():
+        for entry in kind.stated_options():
+            entries.setdefault(entry.name, {})[name] = entry
+    return (
+        option("--solver", type=Named("solver", solvers), default=next(iter(solvers)),
+               help="Sequential quadratic programs (quietarm's own, fast), or IPOPT."),
+        *(_solver_option(of_kinds, len(of_kinds) == len(solvers)) for of_kinds in entries.values()),
+    )  # fmt: skip
+
+
+def _solver_option(of_kinds: Mapping[str, Option], all_have_it: bool) -> click.Option:
+    """An option that some kinds of solver have; None where it was not typed."""
+    entry = next(iter(of_kinds.values()))
+    words = entry.name.replace("_", "-")
+    defaults = {name: _default_words(one.default) for name, one in of_kinds.items()}
+    shown = ", ".join(f"{text} of {name}" for name, text in defaults.items())
+    if len({*defaults.values()}) == 1:
+        shown = next(iter(defaults.values()))
+    whose = "" if all_have_it else f"Of {' and '.join(of_kinds)}: "
+    flag = f"--{words}/--no-{words}" if entry.kind is bool else f"--{words}"
+    help_text = f"{whose}{entry.meaning} [default: {shown}]"
+    return option(flag, type=_type_of(entry), default=None, help=help_text)
+
+
+def _type_of(entry: Option) -> Any:
+    """How an option of a solver is read: a number in its unit, or one of several words."""
+    if entry.kind is float:
+        return Parsed(entry.word, partial(parse_usual, entry.unit, f"a {entry.word}"))
+    words = get_args(entry.kind)
+    return Named(entry.name.replace("_", " "), words) if words else entry.kind
+
+
+def _default_words(default: object) -> str:
+    return f"{default:g}" if isinstance(default, float) else str(default)
+
+
+SOLVER = solver_options()
 """What describes a solver: a command with these has `Given.read_solver`."""
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip

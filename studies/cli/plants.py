@@ -12,7 +12,7 @@ from quietarm.machine.identify import Identified
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import unknown
-from quietarm.studies.cli.quantities import MEASURED, once
+from quietarm.studies.cli.quantities import MEASURED, once, parse_parameters
 from quietarm.views.report.terminal import print_lines
 from quietarm.views.report.words import note_lines
 
@@ -55,6 +55,13 @@ def choose_kind(named: Kind | None, of_file: Mapping[str, type[Plant]] | None) -
     if named and named not in of_file.values():
         raise ValueError(f"{defined}, not {named.name}; leave {named.name} or --plant-file out")
     return named or next(iter(of_file.values()))
+
+
+def parameters_of(kind: Kind, settings: Iterable[tuple[str, str]]) -> dict[str, tuple[float, ...]]:
+    """The parameters that were set, each with its value, or several."""
+    if isinstance(kind, Robot):
+        raise ValueError(ROBOT_IS_NO_PLANT)
+    return parse_parameters(kind.plant if isinstance(kind, Identified) else kind, settings)
 
 
 def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:

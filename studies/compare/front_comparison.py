@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class ScoredFront:
     """One front and its figures in a comparison.
 
     Energies [J] are the least within each level. A front of few points would lose by its steps, so
@@ -47,14 +47,14 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class RunsOfMethod:
     """The runs of one method with one set of settings, one for each seed.
 
     `best`, `median` and `worst` are attainment surfaces: what one, half, and all of them reach.
     """
 
     label: str
-    runs: tuple[Measured, ...]
+    runs: tuple[ScoredFront, ...]
     best: Array
     median: Array
     worst: Array
@@ -71,7 +71,7 @@ class Group:
         return stairs, within(self.best, stairs), within(self.worst, stairs)
 
     def spread(self, figure: str, entry: int | str | None = None) -> Spread:
-        """Quartiles over the runs of a figure of `Measured`, as `front.record.seconds`.
+        """Quartiles over the runs of a figure of `ScoredFront`, as `front.record.seconds`.
 
         Of `energies` and the like the entry of a level, of `scores` that of an indicator.
         """
@@ -88,7 +88,7 @@ class Comparison:
     ----------
     task : PointToPoint
         The move.
-    groups : tuple of Group
+    groups : tuple of RunsOfMethod
         Methods, in the order in which they were given.
     reference : str
         What IGD+ and additive epsilon are measured against.
@@ -116,7 +116,7 @@ class Comparison:
     """
 
     task: PointToPoint
-    groups: tuple[Group, ...]
+    groups: tuple[RunsOfMethod, ...]
     reference: str
     objectives: tuple[str, ...]
     corner: tuple[float, ...]
@@ -128,7 +128,7 @@ class Comparison:
     floor: float | None = None
 
     @property
-    def runs(self) -> tuple[Measured, ...]:
+    def runs(self) -> tuple[ScoredFront, ...]:
         """The runs of all groups."""
         return tuple(run for group in self.groups for run in group.runs)
 
@@ -199,7 +199,7 @@ def compare_fronts(
     clouds = map(_Cloud, names, fronts, points, between)
     measured = [_measured(cloud, scale, levels, best) for cloud in clouds]
     groups = [
-        Group(
+        RunsOfMethod(
             label,
             tuple(measured[i] for i in members),
             *_surfaces([_curve(points[i]) for i in members]),
@@ -243,11 +243,11 @@ class _Cloud(NamedTuple):
     between: Array
 
 
-def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array) -> Measured:
+def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array) -> ScoredFront:
     """A front with its figures."""
     energies = within(cloud.points, levels)
     energies_between = within(cloud.between, levels)
-    return Measured(
+    return ScoredFront(
         name=cloud.name,
         front=cloud.front,
         between=best_of([_curve(cloud.between)]),

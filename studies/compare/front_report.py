@@ -14,7 +14,7 @@ from quietarm.ocp import Front, task_difference
 from quietarm.ocp.objectives import objectives_on
 from quietarm.studies.compare.front_comparison import (
     Comparison,
-    Group,
+    RunsOfMethod,
     compare_fronts,
     differ_in_window_alone,
 )
@@ -85,7 +85,7 @@ def methods_table(comparison: Comparison) -> pd.DataFrame:
     return pd.DataFrame([_row(comparison, group) for group in comparison.groups])
 
 
-def _row(comparison: Comparison, group: Group) -> dict[str, object]:
+def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
     tip_unit = comparison.task.plant.tip_unit
     energies = {
         f"F2 [J] within {tip_words(level, tip_unit)}": spread_words(

@@ -42,7 +42,7 @@ from quietarm.views.pictures.motion import (
     limits_in_sight,
     names_of_curves,
 )
-from quietarm.views.pictures.structure import Part, Structure, structures_of
+from quietarm.views.pictures.structure import DrawnLine, Structure, structures_of
 from quietarm.views.report.method_rows import label_of
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import counted, raised, window_words
@@ -293,7 +293,7 @@ def _coordinates(structure: Structure) -> Array:
     return np.hstack([*parts, *structure.paths])
 
 
-def _part(part: Part) -> dict[str, Any]:
+def _part(part: DrawnLine) -> dict[str, Any]:
     points = part.points.shape[1]
     look = "rigid" if part.colour == INK else "link"
     if part.colour == FAINT:

@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.named_method import NamedMethod
 
 GRADIENT_LABELS = {
     "epsilon": "epsilon constraint", "weighted": "weighted sum", "multistart": "multistart",
 }  # fmt: skip
-"""Methods of the gradient, which may name their solver, as ``epsilon:ipopt``."""
+"""Methods by the gradient, by their names."""
 _SOLVERS = {"sqp": "SQP", "ipopt": "IPOPT"}
-_POLISHED = ", polished", "+polish"
-"""What `polish_front` and a job add to the name of a method."""
-
-
-def unpolished(name: str) -> str:
-    """The method whose front was polished, without its settings; any other name as it is."""
-    for ending in _POLISHED:
-        name = name.removesuffix(ending)
-    return name
 
 
 def is_gradient(method: str) -> bool:
     """Whether a method is the gradient's alone, by the name in a front or a job's label."""
-    return unpolished(method.partition("(")[0]).partition(":")[0] in GRADIENT_LABELS
+    return NamedMethod.read(method).by_gradient
 
 
 def label_of(method: str, solver: str = "") -> str:
     """A method in tables and pictures; of the gradient with its solver, named or given."""
-    name, bracket, settings = method.partition("(")
-    alone = unpolished(name)
-    way, _, named = alone.partition(":")
+    named = NamedMethod.read(method)
     known = GRADIENT_LABELS | {name: preset.label for name, preset in PRESETS.items()}
-    words = known.get(way, alone)
-    if way in GRADIENT_LABELS and (solver := _SOLVERS.get(named or solver, "")):
+    words = known.get(named.method, named.method)
+    if named.by_gradient and (solver := _SOLVERS.get(named.solver or solver, "")):
         words += f", {solver}"
-    if alone != name:
+    if named.polish:
         words += ", polished"
-    return f"{words} {bracket}{settings}" if bracket else words
+    return f"{words} {named.settings}" if named.settings else words
 
 
 def described(method: str) -> str:

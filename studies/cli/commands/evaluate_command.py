@@ -11,7 +11,7 @@ from quietarm.models import Robot
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
-from quietarm.studies.cli.commands.plan_command import Answer, finish_motion
+from quietarm.studies.cli.commands.plan_command import FoundMotion, finish_motion
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
@@ -95,7 +95,7 @@ def _evaluate_coefficients(given: Given) -> None:
         profile = families()[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
         plan = evaluate_coefficients(task, given.coefficients or [], profile=profile)
-    finish_motion(Answer(plan), given.output, sensitivities=given.sensitivities)
+    finish_motion(FoundMotion(plan), given.output, sensitivities=given.sensitivities)
 
 
 def _evaluate_path(given: Given) -> None:

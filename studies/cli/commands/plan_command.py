@@ -107,7 +107,7 @@ def plan(given: Given) -> None:
             library = MoveLibrary(given.dataset)
             place = given.read_place(library.grid.task.plant)
             solution, between, trouble = plan_from(library, **place)
-        answer = Answer(solution, [between.words], trouble=trouble)
+        answer = FoundMotion(solution, [between.words], trouble=trouble)
     else:
         fastest = given.duration == _FASTEST
         first_duration = {"duration": 1.0} if fastest else {}  # the search begins from it
@@ -164,7 +164,7 @@ def _refuse_meaningless(given: Given) -> None:
 
 
 @dataclass(frozen=True)
-class Answer:
+class FoundMotion:
     """One motion that was found, and what is said of it.
 
     Attributes
@@ -185,31 +185,35 @@ class Answer:
     trouble: Exception | None = None
 
 
-def _find_free_motion(task: PointToPoint, *, solver: Solver, **settings: Any) -> Answer:
+def _find_free_motion(task: PointToPoint, *, solver: Solver, **settings: Any) -> FoundMotion:
     """The best motion without a parametrisation, beside the plan of a polynomial."""
     beside = None
     with busy("refining the grid"):
         floor = energy_floor(task, solver=solver, **settings)
         with suppress(SolverFailedError):
             beside = plan_move(task, solver=solver)
-    return Answer(floor, beside=beside)
+    return FoundMotion(floor, beside=beside)
 
 
-def _find_fastest(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> Answer:
+def _find_fastest(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> FoundMotion:
     """The shortest move, and why a shorter one fails."""
     with busy("looking for the shortest duration"):
         shortest = fastest_move(task, profile, **settings)
     notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
-    return Answer(shortest.plan, notes)
+    return FoundMotion(shortest.plan, notes)
 
 
-def _find_least_energy(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> Answer:
+def _find_least_energy(
+    task: PointToPoint, profile: JointProfile | None, **settings: Any
+) -> FoundMotion:
     """The move of least energy in its duration."""
     with busy("solving"):
-        return Answer(plan_move(task, profile, **settings))
+        return FoundMotion(plan_move(task, profile, **settings))
 
 
-def finish_motion(answer: Answer, output: Sequence[Path], *, sensitivities: bool = False) -> None:
+def finish_motion(
+    answer: FoundMotion, output: Sequence[Path], *, sensitivities: bool = False
+) -> None:
     """Save a motion; show its figures, and how they change with the parameters of the plant."""
     motion = answer.motion
     shown = list[str | Sequence[tuple[str, str]]]()
