@@ -29,7 +29,7 @@ _ALONG = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class RigidBody:
     """A body and the joint before it, in whose frame its inertia is.
 
     The frame of the joint stands in that of the parent; the joint turns about its axis, or slides
@@ -50,7 +50,7 @@ class Mechanism:
 
     Attributes
     ----------
-    bodies : sequence of Body
+    bodies : sequence of RigidBody
     driven, sprung : sequence of int
         Numbers of the bodies whose joints are driven, in the order of the robot's joints, and of
         those whose joints have springs.
@@ -68,7 +68,7 @@ class Mechanism:
         What an error about loads asks besides, as whether lengths are in millimetres.
     """
 
-    bodies: Sequence[Body]
+    bodies: Sequence[RigidBody]
     driven: Sequence[int]
     sprung: Sequence[int]
     stiffness: Array
@@ -107,7 +107,7 @@ class _Tree:
     """Bodies as they grow from the ground."""
 
     def __init__(self) -> None:
-        self.bodies = list[Body]()
+        self.bodies = list[RigidBody]()
         self.springs = dict[int, tuple[float, float]]()
         self.joints = dict[str, int]()
         self.links = dict[str, tuple[int, Frame]]()
@@ -123,7 +123,7 @@ class _Tree:
     ) -> int:
         """A body at a place; its number."""
         parent, frame = place
-        self.bodies.append(Body(joint, parent, frame, axis, slides, inertia or Inertia()))
+        self.bodies.append(RigidBody(joint, parent, frame, axis, slides, inertia or Inertia()))
         number = len(self.bodies) - 1
         if spring is not None:
             self.springs[number] = spring

@@ -14,8 +14,8 @@ from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.dynamics.modes import sag_at
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.frames import Frame
+from quietarm.models.robot.on_path.path_tables import modes_on, tables_of
 from quietarm.models.robot.on_path.reduction import Reduction
-from quietarm.models.robot.on_path.tables import modes_on, tables_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 
 _ELEVATION = np.radians(25.0)

@@ -11,7 +11,7 @@ from robots import BAR, END, START, UR5_JOINTS, ur5_with_bar, urdf_of
 
 import quietarm as qa
 from quietarm.models import Base, Spring
-from quietarm.models.robot.on_path.tables import modes_on, swings_of
+from quietarm.models.robot.on_path.path_tables import modes_on, swings_of
 
 FILE = """
 urdf: {urdf}
