@@ -89,7 +89,7 @@ class StickFigure:
         """How many rows of the chain stand before what is drawn as bent: the beam, or the end."""
         if not self._has_beam:
             return len(chain)
-        return sum(not self._bodies[row - 1].joint.startswith("beam ") for row in chain)
+        return sum(not self._bodies[row - 1].of_beam for row in chain)
 
     def _origins(self, place: float, tips: Array) -> Array:
         """Of the ground, of every body, and the tip [m], shape (bodies + 2, 3)."""
