@@ -32,14 +32,35 @@ COUNT = "count"
 """Unit of a parameter that is a whole number."""
 TIP = "displacement of the tip per modal amplitude"
 """Meaning of a plant's phi, the mode shape at its tip."""
+FREQUENCY = "frequency"
+"""The kind of a parameter that is the frequency of a mode [rad/s]."""
+DAMPING = "damping"
+"""The kind of a parameter that is the damping ratio of a mode."""
+OTHER = "other"
+"""The kind of all other parameters."""
 
 
-def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
-    """Declare a parameter of a plant, a field of its frozen dataclass; the default in SI units.
+def parameter(
+    default: float, unit: str, source: str, meaning: str = "", kind: str | None = None
+) -> Any:
+    """Declare a parameter of a plant, a field of its frozen dataclass.
 
-    The unit is ``"-"`` where there is none, the source an equation, a table or a reason.
+    Parameters
+    ----------
+    default : float
+        In SI units.
+    unit : str
+        ``"-"`` where there is none.
+    source, meaning : str
+        An equation, a table or a reason; what it is, in words.
+    kind : str, optional
+        ``"frequency"`` or ``"damping"``, the damping ratio of a mode, which recordings of a swing
+        tell; ``"other"``. By default a frequency where the unit is rad/s, and else other.
     """
-    return field(default=default, metadata={"unit": unit, "source": source, "meaning": meaning})
+    if kind not in (None, FREQUENCY, DAMPING, OTHER):
+        raise ValueError(f"kind is {kind!r}; give {FREQUENCY!r}, {DAMPING!r} or {OTHER!r}")
+    metadata = {"unit": unit, "source": source, "meaning": meaning, "kind": kind}
+    return field(default=default, metadata=metadata)
 
 
 def content(meaning: str) -> Any:
@@ -306,6 +327,12 @@ class Plant(ABC):
 
     @classmethod
     @final
+    def parameter_kinds(cls) -> dict[str, str]:
+        """The parameters' kinds by name: frequency, damping or other."""
+        return {entry.name: _kind_of(entry) for entry in cls.parameter_fields()}
+
+    @classmethod
+    @final
     def parameter_fields(cls) -> tuple[Field[Any], ...]:
         """The fields that are parameters: all but `content`."""
         return tuple(entry for entry in fields(cls) if "content" not in entry.metadata)
@@ -354,6 +381,14 @@ class Plant(ABC):
         """
         check_contract(self)
         check_passive(self)
+
+
+def _kind_of(entry: Field[Any]) -> str:
+    """The kind of a parameter, as its field declares it."""
+    declared = entry.metadata.get("kind")
+    if declared is None:
+        return FREQUENCY if entry.metadata.get("unit") == "rad/s" else OTHER
+    return declared
 
 
 def known_plants() -> dict[str, type[Plant]]:

@@ -44,8 +44,7 @@ from quietarm.models.robot.dynamics.robot_parts import Limits
 from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
-from quietarm.models.robot.on_path.stick_figure import stick_figure_of
-from quietarm.models.robot.on_path.tables import (
+from quietarm.models.robot.on_path.path_tables import (
     EXCITED,
     FARTHEST,
     MOST_MODES,
@@ -59,6 +58,7 @@ from quietarm.models.robot.on_path.tables import (
     tables_of,
     variations_of,
 )
+from quietarm.models.robot.on_path.stick_figure import stick_figure_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot

@@ -21,6 +21,7 @@ from quietarm.metaheuristics.evaluation.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
 from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY, joint_label, joint_unit
+from quietarm.models.plant import DAMPING, OTHER
 from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
@@ -68,9 +69,9 @@ def parse_share(text: str, name: str) -> float:
     return value
 
 
-def parse_parameter(text: str, unit: str, name: str) -> float:
-    """Read a plant's parameter; dampings are shares."""
-    if name.startswith(("zeta", "damping")):
+def parse_parameter(text: str, unit: str, name: str, kind: str = OTHER) -> float:
+    """Read a plant's parameter; damping ratios are shares."""
+    if kind == DAMPING:
         return parse_share(text, name)
     return parse_quantity(text, unit, f"a value of {name}")
 
@@ -80,6 +81,7 @@ def parse_parameters(
 ) -> dict[str, tuple[float, ...]]:
     """Read the values that a plant's parameters are set to, several for an axis of a sweep."""
     units = plant.units()
+    kinds = plant.parameter_kinds()
     meanings = {entry.name: entry.metadata.get("meaning", "") for entry in fields(plant)}
     values: dict[str, tuple[float, ...]] = {}
     for name, text in once(pairs, "--set ").items():
@@ -87,7 +89,9 @@ def parse_parameters(
             symbols = [symbol for symbol, meaning in meanings.items() if name in meaning]
             meant = f"; the {name} is {' or '.join(symbols)}" if symbols else ""
             raise ValueError(has_no(plant.name, "parameter", name, meanings) + meant)
-        values[name] = parse_values(text, partial(parse_parameter, unit=units[name], name=name))
+        values[name] = parse_values(
+            text, partial(parse_parameter, unit=units[name], name=name, kind=kinds[name])
+        )
     return values
 
 

@@ -15,6 +15,7 @@ from quietarm.machine.identify import Identified, Part
 from quietarm.machine.identify.fits.diagnosis import spectrum_of
 from quietarm.machine.identify.identification import curve_of
 from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.plant import FREQUENCY
 from quietarm.views.pictures.axes import new_figure
 from quietarm.views.pictures.grammar import BLUE, FAINT, GREY, INK, RED
 from quietarm.views.report.words import span_words
@@ -101,17 +102,18 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
 
 
 def _frequencies(machine: Identified, part: Part) -> list[float]:
-    units = machine.plant.units()
-    return [value / (2 * pi) for name, value in part.values.items() if units[name] == "rad/s"]
+    kinds = machine.plant.parameter_kinds()
+    return [value / (2 * pi) for name, value in part.values.items() if kinds[name] == FREQUENCY]
 
 
 def _over_parts(row: Any, machine: Identified) -> None:
     """The identified parameters of every part, with both intervals."""
     axes = row.subplots(1, len(machine.estimates[:2]), squeeze=False)[0]
     units = machine.plant.units()
+    kinds = machine.plant.parameter_kinds()
     number = np.arange(1, len(machine.parts) + 1)
     for ax, estimate in zip(axes, machine.estimates):
-        hertz = units[estimate.parameter] == "rad/s"
+        hertz = kinds[estimate.parameter] == FREQUENCY
         size = 2 * pi if hertz else 1.0
         values = np.array([part.values[estimate.parameter] for part in machine.parts]) / size
         spread = (

@@ -10,8 +10,8 @@ import numpy as np
 from quietarm.models import GeometricPath, Robot
 from quietarm.models.joint_motion import joint_label, joint_unit, kind_of_joints
 from quietarm.models.robot.dynamics.modes import modes_at, sag_at
+from quietarm.models.robot.on_path.path_tables import modes_on, swings_of
 from quietarm.models.robot.on_path.reduction import MIDDLE
-from quietarm.models.robot.on_path.tables import modes_on, swings_of
 from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
 

@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.columns import Columns
+from quietarm.machine.identify.fits.columns import BasisColumns
 from quietarm.machine.identify.fits.least_squares import least_squares
 from quietarm.machine.recordings.recording import Recording
 
@@ -24,7 +24,7 @@ class SwingModel:
     ----------
     recording : Recording
         The part of it, thinned to what the modes need.
-    columns : Columns
+    columns : BasisColumns
         What the signals consist of, by the parameters.
     cosines : int, optional
         How many of a slow motion, beside an offset and a slope.
@@ -38,7 +38,7 @@ class SwingModel:
     """
 
     def __init__(
-        self, recording: Recording, columns: Columns, cosines: int = 0, scaled: bool = True
+        self, recording: Recording, columns: BasisColumns, cosines: int = 0, scaled: bool = True
     ) -> None:
         self.time = recording.time
         self.values = recording.values

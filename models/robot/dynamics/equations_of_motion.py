@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.robot.dynamics.mechanism import GROUND, Body, Mechanism
+from quietarm.models.robot.dynamics.mechanism import GROUND, Mechanism, RigidBody
 from quietarm.models.robot.frames import Frame, skew_of
 
 _NOTHING = 1e-10
@@ -83,7 +83,7 @@ def place_of(mechanism: Mechanism, link: tuple[int, Frame], q: ca.SX) -> tuple[c
     return rotation, origin
 
 
-def _placed(body: Body, position: ca.SX) -> tuple[ca.SX, ca.SX]:
+def _placed(body: RigidBody, position: ca.SX) -> tuple[ca.SX, ca.SX]:
     """Rotation and origin of a body's frame in its parent's."""
     fixed = ca.SX(_clean(body.frame.rotation))
     origin = ca.SX(_clean(body.frame.origin))

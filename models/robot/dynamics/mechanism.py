@@ -29,11 +29,11 @@ _ALONG = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class RigidBody:
     """A body and the joint before it, in whose frame its inertia is.
 
     The frame of the joint stands in that of the parent; the joint turns about its axis, or slides
-    along it.
+    along it. Some are `of_beam`: its pieces, and what is between two hinges at one place.
     """
 
     joint: str
@@ -42,6 +42,7 @@ class Body:
     axis: Array
     slides: bool
     inertia: Inertia
+    of_beam: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,7 @@ class Mechanism:
 
     Attributes
     ----------
-    bodies : sequence of Body
+    bodies : sequence of RigidBody
     driven, sprung : sequence of int
         Numbers of the bodies whose joints are driven, in the order of the robot's joints, and of
         those whose joints have springs.
@@ -68,7 +69,7 @@ class Mechanism:
         What an error about loads asks besides, as whether lengths are in millimetres.
     """
 
-    bodies: Sequence[Body]
+    bodies: Sequence[RigidBody]
     driven: Sequence[int]
     sprung: Sequence[int]
     stiffness: Array
@@ -107,7 +108,7 @@ class _Tree:
     """Bodies as they grow from the ground."""
 
     def __init__(self) -> None:
-        self.bodies = list[Body]()
+        self.bodies = list[RigidBody]()
         self.springs = dict[int, tuple[float, float]]()
         self.joints = dict[str, int]()
         self.links = dict[str, tuple[int, Frame]]()
@@ -120,10 +121,12 @@ class _Tree:
         inertia: Inertia | None = None,
         slides: bool = False,
         spring: tuple[float, float] | None = None,
+        of_beam: bool = False,
     ) -> int:
         """A body at a place; its number."""
         parent, frame = place
-        self.bodies.append(Body(joint, parent, frame, axis, slides, inertia or Inertia()))
+        body = RigidBody(joint, parent, frame, axis, slides, inertia or Inertia(), of_beam)
+        self.bodies.append(body)
         number = len(self.bodies) - 1
         if spring is not None:
             self.springs[number] = spring
@@ -243,9 +246,14 @@ def _add_beam(tree: _Tree, beam: Beam) -> None:
         number, frame = place
         hinge = (number, frame @ Frame(origin=(at - before) * _ALONG))
         about_x, about_y = ((value, damping_time * value) for value in stiffness)
-        middle = tree.add(f"beam {count} about x", hinge, _X, spring=about_x)
+        middle = tree.add(f"beam {count} about x", hinge, _X, spring=about_x, of_beam=True)
         piece = tree.add(
-            f"beam {count} about y", (middle, Frame()), _Y, pieces[count], spring=about_y
+            f"beam {count} about y",
+            (middle, Frame()),
+            _Y,
+            pieces[count],
+            spring=about_y,
+            of_beam=True,
         )
         place = (piece, Frame())
         before = at

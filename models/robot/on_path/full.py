@@ -11,8 +11,8 @@ from quietarm.models.joint_motion import Array, JointMotion
 from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
 from quietarm.models.robot.dynamics.modes import sag_at
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.on_path.path_tables import modes_on
 from quietarm.models.robot.on_path.reduction import Reduction
-from quietarm.models.robot.on_path.tables import modes_on
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
 

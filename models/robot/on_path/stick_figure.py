@@ -14,8 +14,8 @@ from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.dynamics.modes import sag_at
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.frames import Frame
+from quietarm.models.robot.on_path.path_tables import modes_on, tables_of
 from quietarm.models.robot.on_path.reduction import Reduction
-from quietarm.models.robot.on_path.tables import modes_on, tables_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 
 _ELEVATION = np.radians(25.0)
@@ -89,7 +89,7 @@ class StickFigure:
         """How many rows of the chain stand before what is drawn as bent: the beam, or the end."""
         if not self._has_beam:
             return len(chain)
-        return sum(not self._bodies[row - 1].joint.startswith("beam ") for row in chain)
+        return sum(not self._bodies[row - 1].of_beam for row in chain)
 
     def _origins(self, place: float, tips: Array) -> Array:
         """Of the ground, of every body, and the tip [m], shape (bodies + 2, 3)."""
