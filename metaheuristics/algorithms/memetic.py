@@ -99,7 +99,7 @@ class MemeticMOEAD(ScaledMOEAD):
         solutions = self._curve.solver.solve(problems, list(X[rows]), warm=True)
         spent = COST.since(before)
         of_gradient = 1 + X.shape[1]
-        scenarios = len(self._curve.transcription.errors)
+        scenarios = len(self._curve.program.errors)
         self._function.charge((spent.gradients * of_gradient + spent.candidates) // scenarios)
         improved = np.array([solution.coefficients for solution in solutions])
         improved = improved[np.isfinite(improved).all(axis=1)]

@@ -18,7 +18,7 @@ from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, NonlinearProgram, Solution, Transcription
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
@@ -48,7 +48,7 @@ class Certificate(NamedTuple):
 class Curve:
     """A task along its profile, whose residual is limited or weighted."""
 
-    transcription: Transcription
+    program: Program
     setup: Setup
 
     @classmethod
@@ -59,12 +59,12 @@ class Curve:
         """
         profile.refuse_no_choice()
         refuse_too_short(task)
-        return cls(Transcription.of(task, profile, setup.steps), setup)
+        return cls(Program.of(task, profile, setup.steps), setup)
 
     @property
     def task(self) -> PointToPoint:
         """The move."""
-        return self.transcription.task
+        return self.program.task
 
     @property
     def solver(self) -> Solver:
@@ -74,18 +74,18 @@ class Curve:
     @cached_property
     def starts(self) -> list[Array]:
         """Coefficients to start from."""
-        return self.setup.start_coefficients(self.transcription.profile)
+        return self.setup.start_coefficients(self.program.profile)
 
     @property
     def tolerances(self) -> Tolerances:
         """Of points between the ends: less exact than a plan; steps are doubled once."""
-        return Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps)
+        return Tolerances(energy=1e-4, most_steps=2 * self.program.steps)
 
     def problem(
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
-    ) -> NonlinearProgram:
+    ) -> Program:
         """The problem at a residual limit [m]."""
-        return NonlinearProgram.of(self.transcription, residual_limit, self.setup.bound, minimise)
+        return self.program.within(residual_limit, self.setup.bound, minimise)
 
     def certify(
         self,
@@ -123,7 +123,7 @@ class Curve:
         """A certified solution as a point."""
         solution = certified.solution
         point = FrontPoint(
-            self.transcription.profile.checked(solution.coefficients),
+            self.program.profile.checked(solution.coefficients),
             certified.checked.residual,
             certified.checked.energy,
             solution.shadow_prices,
@@ -151,12 +151,12 @@ class Curve:
             iterations + sum(end.iterations for end in ended),
             0.0,
             points=points,
-            steps=self.transcription.steps,
+            steps=self.program.steps,
             **settings,
         )
         return Front(
             task=self.task,
-            profile=self.transcription.profile,
+            profile=self.program.profile,
             points=non_dominated(certified),
             record=record,
             reference=reference_corner(self.task),

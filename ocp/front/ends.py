@@ -18,9 +18,8 @@ from quietarm.ocp.planning.best_of_starts import (
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify_one
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
-    NonlinearProgram,
+    Program,
     Solution,
-    Transcription,
     still_of,
 )
 
@@ -88,7 +87,7 @@ def _at_rest(curve: Curve) -> _Still | None:
         problem = curve.problem(0.0)
         first, _ = solve_from_starts(problem, curve.starts, solver)
         rough = certify_one(problem, first, solver, Tolerances(curve.tolerances.energy))
-        curve = replace(curve, transcription=rough.problem.transcription)
+        curve = replace(curve, program=rough.problem)
         end = certify_one(curve.problem(0.0), rough.solution, solver)
     except SolverFailedError:
         return None
@@ -105,7 +104,7 @@ def _least_residual(curve: Curve, cheapest: Solution) -> _Still:
     least = least_peaks_of(curve.problem(), curve.starts, solver).get(RESIDUAL)
     if least is None:
         return _Still(curve, cheapest, _certify_cheapest(curve, cheapest))
-    limits = curve.problem().scalarization.limits
+    limits = curve.problem().limits
     try:
         reached = certify_one(
             curve.problem(minimise={RESIDUAL: 1.0}),
@@ -125,20 +124,18 @@ def _least_residual(curve: Curve, cheapest: Solution) -> _Still:
     return _Still(curve, still, certificate._replace(iterations=iterations))
 
 
-def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> NonlinearProgram:
+def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> Program:
     """The problem of least energy within the residual that was reached.
 
     By the share `between_samples` the residual may exceed there what it is at its samples.
     """
-    transcription, scalarization = reached.problem
     residual = Limit.of_residual(reached.solution.residual * (1 + between_samples))
-    limits = [limit for limit in scalarization.limits if limit.name != RESIDUAL]
-    cheapest = scalarization._replace(
+    limits = [limit for limit in reached.problem.limits if limit.name != RESIDUAL]
+    return reached.problem.asking(
         limits=(*limits, residual),
         minimise=LEAST_ENERGY,
         offset=0.0,
     )
-    return NonlinearProgram(transcription, cheapest)
 
 
 def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3)) -> Ends:
@@ -150,10 +147,10 @@ def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0
     last weight, reducing the residual by a further hundredth of the cheapest end's would cost five
     times the energy of the nominal plant's motion at rest.
     """
-    profile = curve.transcription.profile
+    profile = curve.program.profile
     nominal = find_ends(Curve.begin(curve.task.certain, profile, curve.setup))
-    steps = nominal.curve.transcription.steps
-    curve = replace(curve, transcription=Transcription(curve.task, profile, steps))
+    steps = nominal.curve.program.steps
+    curve = replace(curve, program=Program(curve.task, profile, steps))
     starts = [nominal.cheapest.coefficients, nominal.still.coefficients]
     (cheapest,) = best_of_starts([curve.problem()], [starts], curve.solver)
     still = cheapest

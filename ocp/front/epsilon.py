@@ -226,7 +226,7 @@ def _improve(
     changed: set[float] = set()
     for limit, problem, solution in zip(limits, problems, solutions):
         known = best.get(limit)
-        if known is None or better(solution, known, problem.scalarization):
+        if known is None or better(solution, known, problem):
             changed.add(limit)
             improved[limit] = solution
         iterations = solution.iterations + (0 if known is None else known.iterations)

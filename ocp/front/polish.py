@@ -97,13 +97,13 @@ def polish_front(
     if front.objectives == RESIDUAL_AND_ENERGY:
         curve = curve_of(front, starts=1, steps=steps, solver=solver)
         improved = list(_along(curve, front, report))
-        steps_taken = {"steps": curve.transcription.steps}
+        steps_taken = {"steps": curve.program.steps}
     else:
         front.smallest_residual()  # refuses an empty front
         setup = Setup(solver, front.record.bound, 1, front.record.seed or 0, steps)
         surface = Surface.of_front(front, setup)
         improved = list(_on_surface(surface, front, report))
-        steps_taken = {"steps": surface.transcription.steps}
+        steps_taken = {"steps": surface.program.steps}
     certificates = [certificate for of_point in improved for certificate in of_point]
     failures = tuple(
         certificate.point
@@ -156,7 +156,7 @@ def _on_surface(surface: Surface, front: Front, report: Progress) -> Iterator[li
     for done, (point, problem, solution) in enumerate(rows, start=1):
         outcome = solution.status.text
         if solution.status.solved:
-            limits = problem.scalarization.limits
+            limits = problem.limits
             (outcome,) = surface.certify([solution], [problem], limits)
         if isinstance(outcome, FrontPoint):
             better = outcome.energy < point.energy

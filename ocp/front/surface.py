@@ -38,10 +38,8 @@ from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, digits
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
-    NonlinearProgram,
-    Scalarization,
+    Program,
     Solution,
-    Transcription,
     first_steps,
     still_of,
 )
@@ -65,7 +63,7 @@ class Surface:
         The move.
     objectives : tuple of str
         Names of the objectives.
-    transcription : Transcription
+    program : Program
         The task on its steps, with the peaks measured.
     setup : Setup
         How it is solved.
@@ -73,7 +71,7 @@ class Surface:
 
     task: PointToPoint
     objectives: tuple[str, ...]
-    transcription: Transcription
+    program: Program
     setup: Setup
 
     @property
@@ -84,23 +82,24 @@ class Surface:
     @cached_property
     def starts(self) -> list[Array]:
         """Coefficients to start from."""
-        return self.setup.start_coefficients(self.transcription.profile)
+        return self.setup.start_coefficients(self.program.profile)
 
     def problem(
         self, sizes: Mapping[str, float], minimise: Mapping[str, float] = LEAST_ENERGY
-    ) -> NonlinearProgram:
+    ) -> Program:
         """The problem within limits of these sizes, and those of the task."""
         limits = {limit.name: limit for limit in self.task.limits}
         for name in self.axes[1:]:
             size = min(sizes.get(name, inf), limits[name].size if name in limits else inf)
             if size < inf:
-                limits[name] = self.transcription.limits[name].widened_to(size)
+                limits[name] = self.program.limits_of_task[name].widened_to(size)
         residual = Limit.of_residual(sizes.get(RESIDUAL, inf), self.task.plant.tip_unit)
-        scalarization = Scalarization((residual, *limits.values()), self.setup.bound, minimise)
-        return NonlinearProgram(self.transcription, scalarization)
+        return self.program.asking(
+            limits=(residual, *limits.values()), bound=self.setup.bound, minimise=minimise
+        )
 
     def solve(
-        self, problems: Sequence[NonlinearProgram], starts: Sequence[Sequence[Array]]
+        self, problems: Sequence[Program], starts: Sequence[Sequence[Array]]
     ) -> list[Solution]:
         """The best solution of each problem from its starts."""
         return best_of_starts(problems, starts, self.setup.solver)
@@ -109,13 +108,13 @@ class Surface:
     def of_front(cls, front: Front, setup: Setup) -> Surface:
         """The surface of a front that is there already."""
         measured = with_peaks_measured(front.task, peak_quantities(front.objectives))
-        transcription = Transcription.of(measured, front.profile, setup.steps)
-        return cls(front.task, front.objectives, transcription, setup)
+        program = Program.of(measured, front.profile, setup.steps)
+        return cls(front.task, front.objectives, program, setup)
 
     def certify(
         self,
         solutions: Sequence[Solution],
-        problems: Sequence[NonlinearProgram],
+        problems: Sequence[Program],
         limits: Sequence[Limit] | None = None,
     ) -> list[FrontPoint | SolverFailedError]:
         """Solutions as points by CVODES, within these limits or those of the task alone."""
@@ -124,7 +123,7 @@ class Surface:
             problems,
             solutions,
             self.setup.solver,
-            Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps),
+            Tolerances(energy=1e-4, most_steps=2 * self.program.steps),
             limits or (Limit.of_residual(inf, tip_unit), *self.task.limits),
         )
         return [self._point_of(outcome) for outcome in outcomes]
@@ -132,7 +131,7 @@ class Surface:
     def _point_of(self, outcome: Certified | SolverFailedError) -> FrontPoint | SolverFailedError:
         if isinstance(outcome, SolverFailedError):
             return outcome
-        profile = self.transcription.profile
+        profile = self.program.profile
         coefficients = profile.checked(outcome.solution.coefficients)
         motion = Candidate.of_profile(self.task, profile, coefficients)
         prices = outcome.solution.shadow_prices
@@ -266,9 +265,8 @@ def _begin(
     """The surface on its steps, its motion of least residual, and the cheapest."""
     measured = with_peaks_measured(task, peak_quantities(objectives))
     ends = find_ends(Curve.begin(task, profile, setup))
-    steps = setup.steps or max(ends.curve.transcription.steps, first_steps(measured, profile))
-    transcription = Transcription(measured, profile, steps)
-    surface = Surface(task, objectives, transcription, setup)
+    steps = setup.steps or max(ends.curve.program.steps, first_steps(measured, profile))
+    surface = Surface(task, objectives, Program(measured, profile, steps), setup)
     at_rest = ends.still.residual <= still_of(task)
     least = 0.0 if at_rest else ends.still.residual * (1 + _ROOM)
     problems = [surface.problem({RESIDUAL: least}), surface.problem({})]
@@ -392,7 +390,7 @@ def _improve_from_tighter(surface: Surface, grid: Grid, rounds: int = 3) -> None
         for cell, problem, solution in zip(starts, problems, solutions):
             known = grid.best.get(cell)
             grid.iterations += solution.iterations
-            improves = known is None or better(solution, known, problem.scalarization)
+            improves = known is None or better(solution, known, problem)
             if solution.status.solved and improves:
                 grid.best[cell] = solution
                 grid.infeasible.discard(cell)
@@ -419,7 +417,7 @@ def _front_of(
             failures.append(FailedPoint(place, str(point)))
     settings: dict[str, Setting] = {
         "points": points,
-        "steps": surface.transcription.steps,
+        "steps": surface.program.steps,
         "grid": " x ".join(map(str, grid.shape)),
         "infeasible_cells": len(grid.infeasible),
         "cells_left_out": grid.left_out,
@@ -429,7 +427,7 @@ def _front_of(
     task = surface.task
     return Front(
         task=task,
-        profile=surface.transcription.profile,
+        profile=surface.program.profile,
         points=non_dominated(
             [point for point in certified if isinstance(point, FrontPoint)], surface.objectives
         ),

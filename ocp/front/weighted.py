@@ -129,7 +129,7 @@ def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence
     best = min(
         from_far,
         from_near,
-        key=lambda solution: minimum_of(solution, problem.scalarization),
+        key=lambda solution: minimum_of(solution, problem),
     )
     best = replace(best, iterations=from_far.iterations + from_near.iterations)
     if best.status.solved:  # if it is not certified, its place is known

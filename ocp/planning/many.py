@@ -23,7 +23,7 @@ from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import stand_in
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, first_steps, transcribe
+from quietarm.ocp.solvers.problem import Program, Solution, first_steps, programs_of
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
@@ -109,10 +109,8 @@ def plan_moves(
     setup = Setup(solver, bound, starts, seed)
     _check(tasks, profile)
     limit = ResidualLimit.of(tasks[0], residual_limit).size
-    transcriptions = transcribe(tasks, profile, _steps(tasks, profile))
-    problems = [
-        NonlinearProgram.of(transcription, limit, setup.bound) for transcription in transcriptions
-    ]
+    on_steps = programs_of(tasks, profile, _steps(tasks, profile))
+    problems = [program.within(limit, setup.bound) for program in on_steps]
     guesses = setup.start_coefficients(profile)
     plain = guesses[:1]
     random = guesses[1:]
@@ -133,16 +131,14 @@ def plan_moves(
     return moves.to_moves()
 
 
-def _refuse_the_unsolved(
-    problems: Sequence[NonlinearProgram], solutions: list[Solution]
-) -> set[int]:
+def _refuse_the_unsolved(problems: Sequence[Program], solutions: list[Solution]) -> set[int]:
     """Say of moves without a solution that they cannot be, where that needs no solver."""
     refused = set[int]()
     for i, solution in enumerate(solutions):
         if solution.status.solved:
             continue
-        task = problems[i].transcription.task
-        limit = ResidualLimit(problems[i].scalarization.residual_limit)
+        task = problems[i].task
+        limit = ResidualLimit(problems[i].residual_limit)
         try:
             refuse_too_short(task, arrives_at_rest(task, limit))
         except InfeasibleTaskError as error:
@@ -156,7 +152,7 @@ def _refuse_the_unsolved(
 
 
 def _solve_the_unsolved(
-    problems: Sequence[NonlinearProgram],
+    problems: Sequence[Program],
     solutions: list[Solution],
     starts: Sequence[Array],
     solver: Solver,
@@ -177,7 +173,7 @@ def _solve_the_unsolved(
 
 
 def _from_neighbours(
-    problems: Sequence[NonlinearProgram],
+    problems: Sequence[Program],
     start: Array,
     setup: Setup,
     share: int = 8,
@@ -195,7 +191,7 @@ def _from_neighbours(
     solved = [k for k, solution in enumerate(solutions) if solution.status.solved]
     if not solved:
         return solver.solve(problems, [start] * count)
-    moves = np.array([problem.transcription.task.row for problem in problems])
+    moves = np.array([problem.task.row for problem in problems])
     moves /= np.ptp(moves, axis=0) + same
     known = moves[[pilots[k] for k in solved]]
     nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
@@ -214,11 +210,11 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
 class _Table:
     """The columns of `Moves`, empty until a solution is certified."""
 
-    def __init__(self, problems: Sequence[NonlinearProgram], solutions: Sequence[Solution]) -> None:
+    def __init__(self, problems: Sequence[Program], solutions: Sequence[Solution]) -> None:
         count = len(problems)
         self._problems = problems
         self._solutions = list(solutions)
-        self._profile = problems[0].transcription.profile
+        self._profile = problems[0].profile
         self._coefficients = np.full((count, self._profile.size), np.nan)
         self._energy = np.full(count, np.nan)
         self._residual = np.full(count, np.nan)
@@ -274,15 +270,15 @@ class _Table:
         rows = self._by_finer_steps
         if not rows:
             return
-        transcriptions = [self._problems[i].transcription for i in rows]
-        for name, values in finer_peaks(transcriptions, self._coefficients[rows]).items():
+        problems = [self._problems[i] for i in rows]
+        for name, values in finer_peaks(problems, self._coefficients[rows]).items():
             self._peaks[name][rows] = values
 
     def to_moves(self) -> Moves:
         """The plans."""
         solutions = self._solutions
         return Moves(
-            tasks=tuple(problem.transcription.task for problem in self._problems),
+            tasks=tuple(problem.task for problem in self._problems),
             profile=self._profile,
             coefficients=self._coefficients,
             energy=self._energy,
@@ -299,7 +295,7 @@ class _Table:
 
 
 def _certify_from_another_start(
-    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver
+    problem: Program, starts: Sequence[Array], solver: Solver
 ) -> Certified | None:
     """The first solution that CVODES confirms, of a move whose own it does not; None if none."""
     for start in starts:

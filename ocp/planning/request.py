@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, NonlinearProgram, Transcription
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, Program
 from quietarm.ocp.task import PointToPoint
 
 
@@ -48,15 +48,10 @@ class PlanRequest:
         """Coefficients to start from."""
         return self.setup.start_coefficients(self.profile)
 
-    def problem(self, minimise: Mapping[str, float] = LEAST_ENERGY) -> NonlinearProgram:
+    def problem(self, minimise: Mapping[str, float] = LEAST_ENERGY) -> Program:
         """The nonlinear program, of the least energy or another sum."""
-        transcription = Transcription.of(self.task, self.profile, self.setup.steps)
-        return NonlinearProgram.of(
-            transcription,
-            self.residual_limit.size,
-            self.setup.bound,
-            minimise,
-        )
+        program = Program.of(self.task, self.profile, self.setup.steps)
+        return program.within(self.residual_limit.size, self.setup.bound, minimise)
 
     def on(self, task: PointToPoint) -> PlanRequest:
         """The same of another task."""
