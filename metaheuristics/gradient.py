@@ -19,7 +19,7 @@ from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
 from quietarm.ocp.solvers.solver import NAME, Solver
@@ -41,7 +41,7 @@ def multistart_front(
     """
     starts = whole("starts", starts, 2)
     began = time.perf_counter()
-    curve = Curve.begin(task, profile, Setup(solver, bound, 1, seed))
+    curve = Curve.begin(Request(task, profile, solver, bound, 1, seed))
     random = np.random.default_rng(seed)
     guesses = random.uniform(*profile.box(bound), (starts, profile.size))
     (cheapest,) = curve.solver.solve([curve.problem()], [guesses[0]])

@@ -23,7 +23,7 @@ from quietarm.metaheuristics.objective.population import search_steps
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.ocp.cost import COST
 from quietarm.ocp.front.curve import Curve
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.solvers.sqp import Sqp
 
 Rows = NDArray[np.int64]
@@ -69,8 +69,11 @@ class MemeticMOEAD(ScaledMOEAD):
         super()._setup(problem, **options)
         self._function = function
         steps = search_steps(function.task, function.profile)
-        setup = Setup(Sqp(iterations=self.gradient_iterations), function.bound, 1, steps=steps)
-        self._curve = Curve.begin(function.task, function.profile, setup)
+        solver = Sqp(iterations=self.gradient_iterations)
+        request = Request(
+            function.task, function.profile, solver, function.bound, starts=1, steps=steps
+        )
+        self._curve = Curve.begin(request)
 
     def propose(self) -> Array:
         """The offspring, and after them what the gradient improves in this generation."""

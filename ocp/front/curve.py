@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +13,8 @@ from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import refuse_too_short
-from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
@@ -49,17 +47,17 @@ class Curve:
     """A task along its profile, whose residual is limited or weighted."""
 
     program: Program
-    setup: Setup
+    request: Request
 
     @classmethod
-    def begin(cls, task: PointToPoint, profile: JointProfile, setup: Setup) -> Curve:
-        """On the steps that the setup or the task asks for.
+    def begin(cls, request: Request) -> Curve:
+        """On the steps that are asked for, or that the task takes.
 
         InfeasibleTaskError where not even a rigid joint is as fast as the task.
         """
-        profile.refuse_no_choice()
-        refuse_too_short(task)
-        return cls(Program.of(task, profile, setup.steps), setup)
+        request.profile.refuse_no_choice()
+        refuse_too_short(request.task)
+        return cls(Program.of(request.task, request.profile, request.steps), request)
 
     @property
     def task(self) -> PointToPoint:
@@ -69,12 +67,12 @@ class Curve:
     @property
     def solver(self) -> Solver:
         """What solves its problems."""
-        return self.setup.solver
+        return self.request.solver
 
-    @cached_property
+    @property
     def starts(self) -> list[Array]:
         """Coefficients to start from."""
-        return self.setup.start_coefficients(self.program.profile)
+        return self.request.guesses
 
     @property
     def tolerances(self) -> Tolerances:
@@ -85,7 +83,7 @@ class Curve:
         self, residual_limit: float = np.inf, minimise: Mapping[str, float] = LEAST_ENERGY
     ) -> Program:
         """The problem at a residual limit [m]."""
-        return self.program.within(residual_limit, self.setup.bound, minimise)
+        return self.program.within(residual_limit, self.request.bound, minimise)
 
     def certify(
         self,
@@ -146,7 +144,7 @@ class Curve:
         ended = list(certificates)
         failures = tuple(end.point for end in ended if isinstance(end.point, FailedPoint))
         certified = [end.point for end in ended if isinstance(end.point, FrontPoint)]
-        record = self.setup.record(
+        record = self.request.record(
             method,
             iterations + sum(end.iterations for end in ended),
             0.0,
@@ -171,5 +169,5 @@ def curve_of(
     """The curve of a front that is there already, within its bound; it must have a point."""
     front.smallest_residual()
     seed = front.record.seed or 0
-    setup = Setup(solver, front.record.bound, starts, seed, steps)
-    return Curve.begin(front.task, front.profile, setup)
+    bound = front.record.bound
+    return Curve.begin(Request(front.task, front.profile, solver, bound, starts, seed, steps))

@@ -148,7 +148,7 @@ def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0
     times the energy of the nominal plant's motion at rest.
     """
     profile = curve.program.profile
-    nominal = find_ends(Curve.begin(curve.task.certain, profile, curve.setup))
+    nominal = find_ends(Curve.begin(curve.request.on(curve.task.certain)))
     steps = nominal.curve.program.steps
     curve = replace(curve, program=Program(curve.task, profile, steps))
     starts = [nominal.cheapest.coefficients, nominal.still.coefficients]

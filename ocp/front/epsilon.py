@@ -18,7 +18,7 @@ from quietarm.ocp.front.surface import surface_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import digits, number_of_points
 from quietarm.ocp.solvers.problem import STILL, Solution
@@ -92,11 +92,11 @@ def epsilon_front(
     points = number_of_points(points)
     names = checked_objectives(objectives)
     residuals = [positive("residual", residual, "m") for residual in several("at", at, "residuals")]
-    setup = Setup(solver, bound, starts, seed, steps)
+    request = Request(task, profile, solver, bound, starts, seed, steps)
     if names != RESIDUAL_AND_ENERGY:
-        front = surface_front(task, profile, setup, names, points, residuals, report)
+        front = surface_front(request, names, points, residuals, report)
         return front.restated(seconds=time.perf_counter() - began)
-    ends = find_ends(Curve.begin(task, profile, setup))
+    ends = find_ends(Curve.begin(request))
     limits_at = _limits_at(ends, residuals)
     total = points + len(limits_at)
     report(2, total)

@@ -22,7 +22,7 @@ from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.surface import Surface
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.record import Setting, versions
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import NAME, Solver
@@ -100,8 +100,10 @@ def polish_front(
         steps_taken = {"steps": curve.program.steps}
     else:
         front.smallest_residual()  # refuses an empty front
-        setup = Setup(solver, front.record.bound, 1, front.record.seed or 0, steps)
-        surface = Surface.of_front(front, setup)
+        record = front.record
+        seed = record.seed or 0
+        request = Request(front.task, front.profile, solver, record.bound, 1, seed, steps)
+        surface = Surface.of_front(front, request)
         improved = list(_on_surface(surface, front, report))
         steps_taken = {"steps": surface.program.steps}
     certificates = [certificate for of_point in improved for certificate in of_point]
@@ -151,7 +153,7 @@ def _on_surface(surface: Surface, front: Front, report: Progress) -> Iterator[li
     sizes = [{RESIDUAL: point.residual, **point.peaks} for point in front.points]
     problems = [surface.problem(of_point) for of_point in sizes]
     starts = [np.array(point.coefficients) for point in front.points]
-    solutions = surface.setup.solver.solve(problems, starts)
+    solutions = surface.request.solver.solve(problems, starts)
     rows = zip(front.points, problems, solutions)
     for done, (point, problem, solution) in enumerate(rows, start=1):
         outcome = solution.status.text

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import product
 from math import inf
 
@@ -33,8 +32,7 @@ from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit
 from quietarm.ocp.objectives import peak_quantities, with_peaks_measured
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.certify import Certified, Tolerances, certify
-from quietarm.ocp.planning.setup import Setup
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.record import Setting, digits
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
@@ -59,30 +57,32 @@ class Surface:
 
     Attributes
     ----------
-    task : PointToPoint
-        The move.
     objectives : tuple of str
         Names of the objectives.
     program : Program
         The task on its steps, with the peaks measured.
-    setup : Setup
-        How it is solved.
+    request : Request
+        The move, and how it is solved.
     """
 
-    task: PointToPoint
     objectives: tuple[str, ...]
     program: Program
-    setup: Setup
+    request: Request
+
+    @property
+    def task(self) -> PointToPoint:
+        """The move."""
+        return self.request.task
 
     @property
     def axes(self) -> tuple[str, ...]:
         """What is limited: the residual, and the quantities of the peaks."""
         return RESIDUAL, *peak_quantities(self.objectives)
 
-    @cached_property
+    @property
     def starts(self) -> list[Array]:
         """Coefficients to start from."""
-        return self.setup.start_coefficients(self.program.profile)
+        return self.request.guesses
 
     def problem(
         self, sizes: Mapping[str, float], minimise: Mapping[str, float] = LEAST_ENERGY
@@ -95,21 +95,21 @@ class Surface:
                 limits[name] = self.program.limits_of_task[name].widened_to(size)
         residual = Limit.of_residual(sizes.get(RESIDUAL, inf), self.task.plant.tip_unit)
         return self.program.asking(
-            limits=(residual, *limits.values()), bound=self.setup.bound, minimise=minimise
+            limits=(residual, *limits.values()), bound=self.request.bound, minimise=minimise
         )
 
     def solve(
         self, problems: Sequence[Program], starts: Sequence[Sequence[Array]]
     ) -> list[Solution]:
         """The best solution of each problem from its starts."""
-        return best_of_starts(problems, starts, self.setup.solver)
+        return best_of_starts(problems, starts, self.request.solver)
 
     @classmethod
-    def of_front(cls, front: Front, setup: Setup) -> Surface:
+    def of_front(cls, front: Front, request: Request) -> Surface:
         """The surface of a front that is there already."""
         measured = with_peaks_measured(front.task, peak_quantities(front.objectives))
-        program = Program.of(measured, front.profile, setup.steps)
-        return cls(front.task, front.objectives, program, setup)
+        program = Program.of(measured, front.profile, request.steps)
+        return cls(front.objectives, program, request)
 
     def certify(
         self,
@@ -122,7 +122,7 @@ class Surface:
         outcomes = certify(
             problems,
             solutions,
-            self.setup.solver,
+            self.request.solver,
             Tolerances(energy=1e-4, most_steps=2 * self.program.steps),
             limits or (Limit.of_residual(inf, tip_unit), *self.task.limits),
         )
@@ -203,9 +203,7 @@ class Grid:
 
 
 def surface_front(
-    task: PointToPoint,
-    profile: JointProfile,
-    setup: Setup,
+    request: Request,
     objectives: tuple[str, ...],
     points: int,
     residuals: Sequence[float],
@@ -215,7 +213,7 @@ def surface_front(
 
     Errors are those of `epsilon_front`.
     """
-    surface, still, cheapest = _begin(task, profile, setup, objectives)
+    surface, still, cheapest = _begin(request, objectives)
     payoffs = {RESIDUAL: still} | {
         name: _least_peak(surface, name, [still, cheapest]) for name in surface.axes[1:]
     }
@@ -259,14 +257,14 @@ def _solved_grid(
     return grid
 
 
-def _begin(
-    task: PointToPoint, profile: JointProfile, setup: Setup, objectives: tuple[str, ...]
-) -> tuple[Surface, Solution, Solution]:
+def _begin(request: Request, objectives: tuple[str, ...]) -> tuple[Surface, Solution, Solution]:
     """The surface on its steps, its motion of least residual, and the cheapest."""
+    task = request.task
+    profile = request.profile
     measured = with_peaks_measured(task, peak_quantities(objectives))
-    ends = find_ends(Curve.begin(task, profile, setup))
-    steps = setup.steps or max(ends.curve.program.steps, first_steps(measured, profile))
-    surface = Surface(task, objectives, Program(measured, profile, steps), setup)
+    ends = find_ends(Curve.begin(request))
+    steps = request.steps or max(ends.curve.program.steps, first_steps(measured, profile))
+    surface = Surface(objectives, Program(measured, profile, steps), request)
     at_rest = ends.still.residual <= still_of(task)
     least = 0.0 if at_rest else ends.still.residual * (1 + _ROOM)
     problems = [surface.problem({RESIDUAL: least}), surface.problem({})]
@@ -431,7 +429,7 @@ def _front_of(
         points=non_dominated(
             [point for point in certified if isinstance(point, FrontPoint)], surface.objectives
         ),
-        record=surface.setup.record("epsilon", grid.iterations, 0.0, **settings),
+        record=surface.request.record("epsilon", grid.iterations, 0.0, **settings),
         reference=reference_corner(task, surface.objectives),
         failed=len(failures),
         failures=tuple(failures),

@@ -18,7 +18,7 @@ from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import digits, number_of_points
 from quietarm.ocp.solvers.problem import Solution
@@ -79,8 +79,8 @@ def weighted_front(
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
     chosen = [] if weights is None else _pairs(weights)
-    setup = Setup(solver, bound, starts, seed, steps)
-    ends = find_ends(Curve.begin(task, profile, setup))
+    request = Request(task, profile, solver, bound, starts, seed, steps)
+    ends = find_ends(Curve.begin(request))
     minima: list[Minimum] = []
     gaps: list[Gap] = []
     if chosen and not ends.are_one:

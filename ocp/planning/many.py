@@ -17,8 +17,7 @@ from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
 from quietarm.ocp.planning.certify import Certified, FinerFigures, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
-from quietarm.ocp.planning.residual_limit import ResidualLimit
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
@@ -106,17 +105,16 @@ def plan_moves(
     """
     if profile is None:
         profile = choose_profile(tasks[0]) if tasks else SIX
-    setup = Setup(solver, bound, starts, seed)
     _check(tasks, profile)
-    limit = ResidualLimit.of(tasks[0], residual_limit).size
+    request = Request(tasks[0], profile, solver, bound, starts, seed).stating(residual_limit)
     on_steps = programs_of(tasks, profile, _steps(tasks, profile))
-    problems = [program.within(limit, setup.bound) for program in on_steps]
-    guesses = setup.start_coefficients(profile)
+    problems = [program.within(request.residual_limit, request.bound) for program in on_steps]
+    guesses = request.guesses
     plain = guesses[:1]
     random = guesses[1:]
     attempts: list[tuple[Solver, Sequence[Array]]] = []
     if neighbours:
-        solutions = _from_neighbours(problems, guesses[0], setup)
+        solutions = _from_neighbours(problems, request)
         attempts += [(solver, plain), (solver, random)]
     else:
         solutions = best_of_starts(problems, [guesses] * len(problems), solver)
@@ -138,9 +136,8 @@ def _refuse_the_unsolved(problems: Sequence[Program], solutions: list[Solution])
         if solution.status.solved:
             continue
         task = problems[i].task
-        limit = ResidualLimit(problems[i].residual_limit)
         try:
-            refuse_too_short(task, arrives_at_rest(task, limit))
+            refuse_too_short(task, arrives_at_rest(task, problems[i].residual_limit))
         except InfeasibleTaskError as error:
             refused.add(i)
             infeasible = SolveStatus.INFEASIBLE
@@ -174,8 +171,7 @@ def _solve_the_unsolved(
 
 def _from_neighbours(
     problems: Sequence[Program],
-    start: Array,
-    setup: Setup,
+    request: Request,
     share: int = 8,
     same: float = 1e-9,
 ) -> list[Solution]:
@@ -183,9 +179,10 @@ def _from_neighbours(
 
     Moves that differ by less than `same` of the spread of all are one.
     """
-    solver = setup.solver
+    solver = request.solver
+    start = request.guesses[0]
     count = len(problems)
-    shuffled = np.random.default_rng(setup.seed).permutation(count)
+    shuffled = np.random.default_rng(request.seed).permutation(count)
     pilots = shuffled[: math.ceil(count / share)].tolist()
     solutions = solver.solve([problems[i] for i in pilots], [start] * len(pilots))
     solved = [k for k, solution in enumerate(solutions) if solution.status.solved]
