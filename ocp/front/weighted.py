@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import not_negative, quoted, takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Place, Progress, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Place, Progress, Tradeoff, no_report
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
@@ -80,7 +80,7 @@ def weighted_front(
     points = number_of_points(points)
     chosen = [] if weights is None else _pairs(weights)
     request = Request(task, profile, solver, bound, starts, seed, steps)
-    ends = find_ends(Curve.begin(request))
+    ends = find_ends(Tradeoff.begin(request))
     minima: list[Minimum] = []
     gaps: list[Gap] = []
     if chosen and not ends.are_one:
@@ -88,9 +88,9 @@ def weighted_front(
     elif not ends.are_one:
         minima, gaps = _along_chords(ends, points, report)
     pairs = [f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen]
-    front = ends.curve.to_front(
+    front = ends.tradeoff.to_front(
         "weighted",
-        [*ends.certificates, *ends.curve.certify(minima)],
+        [*ends.certificates, *ends.tradeoff.certify(minima)],
         points,
         settings={"weights": ", ".join(pairs)} if pairs else {},
     )
@@ -119,8 +119,8 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence[Array]) -> Minimum:
     """The best minimum of one weighted sum, weights of the scaled objectives."""
-    solver = ends.curve.solver
-    problem = ends.curve.problem(
+    solver = ends.tradeoff.solver
+    problem = ends.tradeoff.problem(
         minimise={RESIDUAL: of_residual / ends.width, ENERGY: of_energy / ends.height}
     )
     # far starts lead past a dearer minimum, near ones keep to the minimum beside them
