@@ -15,11 +15,11 @@ from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
 from quietarm.ocp.checks import has_no, whole
 from quietarm.ocp.cost import COST, Cost
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Tradeoff
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.record import number_of_points, number_of_starts
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
 from quietarm.ocp.solvers.solver import NAME, Solver
@@ -41,19 +41,19 @@ def multistart_front(
     """
     starts = whole("starts", starts, 2)
     began = time.perf_counter()
-    curve = Curve.begin(task, profile, Setup(solver, bound, 1, seed))
+    tradeoff = Tradeoff.begin(Request(task, profile, solver, bound, 1, seed))
     random = np.random.default_rng(seed)
     guesses = random.uniform(*profile.box(bound), (starts, profile.size))
-    (cheapest,) = curve.solver.solve([curve.problem()], [guesses[0]])
+    (cheapest,) = tradeoff.solver.solve([tradeoff.problem()], [guesses[0]])
     limits = random.uniform(0.0, cheapest.residual, starts - 1)
-    problems = [curve.problem(float(limit)) for limit in limits]
-    solutions = curve.solver.solve(problems, list(guesses[1:]))
+    problems = [tradeoff.problem(float(limit)) for limit in limits]
+    solutions = tradeoff.solver.solve(problems, list(guesses[1:]))
     solved = [
         (solution, {RESIDUAL_LIMIT: solution.residual})
         for solution in [cheapest, *solutions]
         if solution.status.solved
     ]
-    front = curve.to_front("multistart", curve.certify(solved), starts)
+    front = tradeoff.to_front("multistart", tradeoff.certify(solved), starts)
     return front.restated(seconds=time.perf_counter() - began)
 
 

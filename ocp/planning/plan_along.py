@@ -20,7 +20,7 @@ from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_starts
 from quietarm.ocp.planning.certify import OVERRUN, certify_one
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.request import PlanRequest
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.record import REST
 from quietarm.ocp.robustness import Worst
@@ -37,44 +37,44 @@ _TIGHTENINGS = 4
 Array = NDArray[np.float64]
 
 
-def plan_along(request: PlanRequest) -> Plan:
+def plan_along(request: Request) -> Plan:
     """The plan along the profile of a request, within its residual limit."""
     began = time.perf_counter()
-    plan = _adapt_limit(request) if request.residual_limit.adapts else _keep_limit(request)
+    plan = _adapt_limit(request) if request.adapts else _keep_limit(request)
     return plan.restated(seconds=time.perf_counter() - began)
 
 
-def _keep_limit(request: PlanRequest) -> Plan:
+def _keep_limit(request: Request) -> Plan:
     """The plan within a residual limit that is stated, between the scenarios as well.
 
     SolverFailedError where the worst case exceeds it.
     """
-    plan = _hold(request, request.starts)
+    plan = _hold(request, request.guesses)
     if plan.worst is None or (plan.excess or 0.0) <= OVERRUN:
         return plan
     unit = request.task.plant.tip_unit
     raise SolverFailedError(
         f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
-        f"limit of {request.residual_limit.size:g} {unit}: give a larger residual limit, more "
+        f"limit of {request.residual_limit:g} {unit}: give a larger residual limit, more "
         f"{request.profile.term}s or a smaller uncertainty"
     )
 
 
-def _adapt_limit(request: PlanRequest) -> Plan:
+def _adapt_limit(request: Request) -> Plan:
     """The plan within the default limit, at most the worst case of the nominal plant's plan.
 
     If neither is feasible, the limit is near the least residual over the scenarios; if that does
     not hold between them, it is the worst case of the plan.
     """
     request = replace(request, quick=False)
-    starts = request.starts
+    starts = request.guesses
     nominal = _nominal_plan(request)
     nominal_worst = np.inf
     if nominal is not None and nominal.worst is not None:
         nominal_worst = nominal.worst.residual
         starts = [np.array(nominal.coefficients), *starts]
     most = max(nominal_worst, REST * request.task.smallness)
-    limit = min(request.residual_limit.size, most)
+    limit = min(request.residual_limit, most)
     try:
         plan = _hold(request.within(limit), starts)
     except InfeasibleTaskError:
@@ -92,21 +92,21 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     return plan.with_entries(residual_limit=plan.worst.residual)
 
 
-def _nominal_plan(request: PlanRequest) -> Plan | None:
+def _nominal_plan(request: Request) -> Plan | None:
     """The plan at rest of the nominal plant, for the uncertain task; None where there is none."""
     nominal = request.on(request.task.certain).within(0.0)
     try:
         refuse_too_short(nominal.task, arrives_at_rest(nominal.task, nominal.residual_limit))
-        plan = _hold(nominal, request.starts)
+        plan = _hold(nominal, request.guesses)
     except SolverFailedError:  # only other motions may keep the limits
         return None
     return plan.on(request.task)
 
 
-def _least_residual(request: PlanRequest, starts: list[Array]) -> float | None:
+def _least_residual(request: Request, starts: list[Array]) -> float | None:
     """The least residual over the scenarios [m]; None where no start was solved."""
     problem = request.within(np.inf).problem(minimise={RESIDUAL: 1.0})
-    (stillest,) = best_of_starts([problem], [starts], request.setup.solver)
+    (stillest,) = best_of_starts([problem], [starts], request.solver)
     return stillest.residual if stillest.status.solved else None
 
 
@@ -118,14 +118,14 @@ class _PlanAndPeaks(NamedTuple):
     peaks: list[Worst]
 
 
-def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Plan:
+def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
     scenarios, and of the motions that were found so many are the next starts. The limit is then
     divided by the remaining excess; where that does not settle it, they become scenarios as well.
     """
-    limit = request.residual_limit.size
+    limit = request.residual_limit
     attempt = _solve_and_look_between(request, starts)
     plan = attempt.plan
     tightened = limit
@@ -152,8 +152,7 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
         elif can_tighten:
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
-            setup = replace(request.setup, steps=plan.steps)
-            following = replace(request, setup=setup, quick=True).within(tightened)
+            following = replace(request, steps=plan.steps, quick=True).within(tightened)
         else:
             break
         try:
@@ -166,38 +165,39 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
     return plan.with_entries(residual_limit=limit)
 
 
-def _solve_and_look_between(request: PlanRequest, starts: list[Array]) -> _PlanAndPeaks:
+def _solve_and_look_between(request: Request, starts: list[Array]) -> _PlanAndPeaks:
     """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
     plan, solved = plan_from_starts(request, starts)
     return _PlanAndPeaks(plan, solved, list(plan.peaks))
 
 
-def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
+def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
     """The plan from starts, whose limit holds in all scenarios.
 
     And the coefficients of all that were solved, cheapest first. Errors are those of
     `solve_from_starts` and `certify`.
     """
     began = time.perf_counter()
-    setup = request.setup
     problem = request.problem()
     best, solved = solve_from_starts(
         problem,
         starts,
-        setup.solver,
+        request.solver,
         quick=request.quick,
-        thorough=setup.thorough,
+        thorough=request.thorough,
         has_stand_in=request.has_stand_in,
     )
-    certified = certify_one(problem, best, setup.solver)
+    certified = certify_one(problem, best, request.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution
     plan = Plan.of_candidate(
         certified.checked,
         status=solution.status,
-        record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
+        record=request.record(
+            request.solver.name, solution.iterations, time.perf_counter() - began
+        ),
         steps=certified.steps,
-        residual_limit=request.residual_limit.size,
+        residual_limit=request.residual_limit,
         shadow_prices=solution.shadow_prices,
     )
     return plan, [solution.coefficients for solution in solved]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.record import Setting
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution
+from quietarm.ocp.solvers.problem import Program, Solution
 
 NAME = "solver"
 """What a record calls it; an option that is not the default stands beside, as solver_tolerance."""
@@ -125,7 +125,7 @@ class Solver:
 
     def solve(
         self,
-        problems: Sequence[NonlinearProgram],
+        problems: Sequence[Program],
         starts: Sequence[NDArray[np.float64]],
         *,
         warm: bool = False,
@@ -135,8 +135,8 @@ class Solver:
 
         Parameters
         ----------
-        problems : sequence of NonlinearProgram
-            Of any tasks, steps and scalarizations.
+        problems : sequence of Program
+            Of any tasks, steps, limits and objectives.
         starts : sequence of ndarray, each of shape (profile.size,)
             Coefficients to start from.
         warm : bool

@@ -14,7 +14,7 @@ from quietarm.metaheuristics import PAPER_BOX
 from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
-from quietarm.ocp.front.curve import Progress, no_report
+from quietarm.ocp.front.tradeoff import Progress, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.planning.named_profiles import families, profile_of
 from quietarm.ocp.window import default_window

@@ -13,9 +13,8 @@ import numpy as np
 from quietarm.ocp import Solver, SolveStatus, Sqp
 from quietarm.ocp.checks import listed, not_negative, positive, quoted
 from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of
-from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import Setting
+from quietarm.ocp.record import Setting, coefficient_bound
 from quietarm.ocp.robustness import OF_MODES
 from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
 from quietarm.ocp.solvers.solver import NAME
@@ -89,7 +88,8 @@ class PlanSettings:
         if residual_limit is None:
             residual_limit = 0.0
         limit = not_negative("residual limit", residual_limit, "m")
-        return cls(limit, Setup(solver, bound).bound, solved_by=solver.stated)
+        bound = None if bound is None else coefficient_bound(bound)
+        return cls(limit, bound, solved_by=solver.stated)
 
     @cached_property
     def solver(self) -> Solver:

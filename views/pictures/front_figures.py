@@ -13,7 +13,7 @@ from quietarm.metaheuristics.score import shares_of_box
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import REST
 from quietarm.views.pictures.axes import (

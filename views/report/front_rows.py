@@ -10,8 +10,8 @@ import numpy as np
 from quietarm.metaheuristics.evaluation.noise import belief_of
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
 from quietarm.ocp import Candidate, CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.robustness import worst_of
 from quietarm.views.report.plan_rows import worst_in_words
