@@ -107,7 +107,7 @@ def bench_report(
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "repeated": _repeated(results),
         "copies": [run.label for run in results.copies],
-        "unsealed": results.unsealed,
+        "imported": results.imported,
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }

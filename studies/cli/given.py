@@ -12,7 +12,6 @@ from click.core import ParameterSource
 
 from quietarm.machine.identify import Identified
 from quietarm.models import Plant, Robot, RobotOnPath
-from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.ocp.planning.named_profiles import profile_of
@@ -62,16 +61,20 @@ class Given:
         """The whole line that was typed."""
         return shlex.join(["quietarm", *self._context.obj])
 
+    @property
+    def _params(self) -> list[click.Parameter]:
+        return self._context.command.get_params(self._context)
+
     def refuse(self, names: Collection[str], why: str) -> None:
         """Refuse options that were typed where they have no meaning."""
-        for param in self._context.command.params:
+        for param in self._params:
             if param.name in names and self.typed(param.name):
                 name = param.opts[0] if isinstance(param, click.Option) else param.name.upper()
                 raise ValueError(f"{name} {why}; leave it out")
 
     def refuse_others(self, than: Collection[str], why: str) -> None:
         """Refuse all options that were typed but some."""
-        names = {param.name for param in self._context.command.params if param.name}
+        names = {param.name for param in self._params if param.name}
         self.refuse(names - {*than}, why)
 
     def read_residual_limit(self, plant: Plant) -> float | None:
@@ -150,7 +153,7 @@ class Given:
             if options[name] is None:
                 raise click.UsageError(f"Missing option '--{name}'. Give it as --{name} {example}")
         moves = {name: options.pop(name) for name in OF_MOVES}
-        units = {name: joint_unit(unit, plant.joint) for name, unit in OF_MOVES.items()}
+        units = {name: unit.of(plant.joint) for name, unit in OF_MOVES.items()}
         axes = [
             Axis(name, values, (plant.units() | units)[name])
             for name, values in {**parameters, **moves}.items()
@@ -180,7 +183,7 @@ class Given:
         task = read_robot_task(self, robot, max(durations), multiples)
         if not self._shows_rows():
             warn_of_notes(task.plant)
-        units = RobotOnPath.units() | {"duration": OF_MOVES["duration"]}
+        units = RobotOnPath.units() | {"duration": str(OF_MOVES["duration"])}
         axes = [
             Axis(name, values, units[name])
             for name, values in {**multiples, "duration": durations}.items()
