@@ -7,4 +7,4 @@ from quietarm.loading import attach
 if not hasattr(casadi, "SX"):  # a script's own file of that name was imported in its place
     raise ImportError(f"{casadi.__file__} hides the library casadi; give that file another name")
 
-__getattr__, __dir__, __all__ = attach(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__, {"joint_unit": "Unit"})

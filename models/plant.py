@@ -23,6 +23,7 @@ from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
 from quietarm.models.notes import Note
+from quietarm.models.rates import rates_along
 from quietarm.models.validation import check_contract, check_passive
 
 if TYPE_CHECKING:
@@ -115,12 +116,12 @@ class Plant(ABC):
 
     A subclass sets `name` and `modes`, declares its parameters as float fields (with `parameter`)
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`; see
-    `validate`. They may have no value at some angles; a move must not pass these.
+    `validate`. Their derivatives are CasADi's. They may have no value at some angles; a move must
+    not pass these.
 
     A plant of several joints moves along a path. What the equations are then given as the joint's
     angle is the place on the path; it gives `joints`, and `torques` in place of `torque`. Where the
-    tips' displacements depend on the place it gives `tips_at` and `tip_speeds` in place of
-    `tip_displacements`.
+    tips' displacements depend on the place it gives `tips_at` in place of `tip_displacements`.
 
     Raises
     ------
@@ -232,8 +233,30 @@ class Plant(ABC):
         return self.tip_displacements(W)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
-        """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
-        return self.tip_displacements(dW)
+        """Time derivatives of `tips_at` [`tip_unit`/s], by default by CasADi.
+
+        Formulas of a plant's own may be faster; they are checked against CasADi's.
+        """
+        if self._tips_follow_the_modes:
+            return self.tip_displacements(dW)
+
+        def tips(path: JointMotion, W: Modes, _: Modes) -> Sequence[Expression]:
+            return self.tips_at(path, W)
+
+        return rates_along(tips, path, W, dW, [0.0] * self.modes)
+
+    def tip_accelerations(
+        self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes
+    ) -> Sequence[Expression]:
+        """Time derivatives of `tip_speeds` [`tip_unit`/s^2], likewise."""
+        if self._tips_follow_the_modes:
+            return self.tip_displacements(ddW)
+        return rates_along(self.tip_speeds, path, W, dW, ddW)
+
+    @property
+    def _tips_follow_the_modes(self) -> bool:
+        """Whether the tips' displacements are the same everywhere on the path."""
+        return type(self).tips_at is Plant.tips_at
 
     @property
     def in_full(self) -> FullEquations | None:

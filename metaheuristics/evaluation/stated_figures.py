@@ -1,4 +1,4 @@
-"""Whether the figures that a file states are those of its motions; what it does not is skipped."""
+"""Whether the figures that a file states are those of its motions."""
 
 from __future__ import annotations
 
@@ -10,20 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics.evaluation.population import figures_of_motions
-from quietarm.models.joint_motion import joint_unit
-from quietarm.ocp import Front, Motion, Plan
-from quietarm.ocp.checks import table_of
+from quietarm.ocp import Front, Plan
+from quietarm.ocp.checks import quoted, table_of
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.figures import ENERGY, FIGURES
 from quietarm.ocp.front.points import refuse_beyond_box
-from quietarm.ocp.limits import quantities_of
-from quietarm.ocp.motion_answer import figures_of
-from quietarm.ocp.objectives import ENERGY, Objective, objectives_on
+from quietarm.ocp.limits import RESIDUAL
+from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import AGREEMENT, REST
-from quietarm.ocp.robustness import Worst
 
-FIGURES = (("residual", "m", REST), ("energy", "J", 0.0))
-"""Name and unit of both objectives, and the difference within which they always agree."""
 PEAK_AGREEMENT = 0.02
 """The share by which a peak may differ: the steps of a search see it at their nodes alone, which
 miss up to 1.4 % of it in the boxes of the named problems."""
@@ -119,70 +115,29 @@ def _least_of(objective: Objective, front: Front, gives: float) -> float:
 
 
 def check_plan(plan: Plan, path: Path) -> None:
-    """Hold what the file of a plan states against its motion; what it does not is skipped.
+    """Hold what the file of a plan states against its motion.
 
-    ValueError where a figure is another; SolverFailedError where the motion has none.
+    ValueError where a figure is another, or not known here; SolverFailedError where the motion has
+    none.
     """
     stated = Plan.stated_by(path)
+    figures = plan.figures
     try:
-        figures = figures_of(plan.motion)
-        if stated.worst is not None:
-            _check_worst(plan, stated.worst, path)
+        _ = figures[ENERGY], figures[RESIDUAL]
     except SolverFailedError as error:
         raise SolverFailedError(f"{path}: {error}") from None
-    units = _units_of(plan)
-    for name, states in stated.figures.items():
+    for name, states in stated.items():
+        if name not in FIGURES:
+            raise ValueError(
+                f"{path} states {quoted(name)}, which is no figure here; import the file that "
+                "defines it first, or name it by --plant-file"
+            )
         gives = figures.get(name)
-        if gives is not None and np.isfinite(gives):
-            if agrees(states, gives, _least_difference(name, plan.motion)):
-                continue
-        elif states == gives:
+        if gives is not None and agrees(states, gives, FIGURES[name].agreement):
             continue
-        unit = units.get(name, "")
+        unit = FIGURES[name].unit_on(plan.task.plant)
         words = "none" if gives is None else f"{gives:.4g} {unit}"
         raise ValueError(
             f"{path} states {name.replace('_', ' ')} {states:.4g} {unit}, but its coefficients "
             f"give {words}; find the plan again"
         )
-
-
-def _units_of(plan: Plan) -> dict[str, str]:
-    """The units of the figures of a plan by name."""
-    plant = plan.task.plant
-    units = {"residual": plant.tip_unit, "energy": "J", "net_work": "J"}
-    units["overshoot"] = joint_unit("rad", plant.joint)
-    for name, quantity in quantities_of(plant.joint, plant.tip_unit).items():
-        for figure in (quantity.peak, f"least_{name}", f"largest_{name}"):
-            units[figure] = quantity.unit
-    return units
-
-
-def _least_difference(name: str, motion: Motion) -> float:
-    """The difference within which a figure of a motion always agrees [its unit]."""
-    if name in ("residual", "overshoot"):
-        return REST
-    if name == "net_work":  # the difference of work done and taken back
-        return AGREEMENT * motion.energy
-    quantity = name.partition("_")[2]
-    if quantity in motion.ranges:  # one side of a range may be near 0
-        return AGREEMENT * max(map(abs, motion.ranges[quantity]))
-    return 0.0
-
-
-def _check_worst(plan: Plan, stated: Worst, path: Path) -> None:
-    """Hold the worst case that a file of before states against what is found now."""
-    worst = plan.worst
-    if worst is None or list(worst.errors) != list(stated.errors):
-        names = ", ".join(stated.errors) or "none"
-        raise ValueError(
-            f"{path} states a worst case with errors of {names}, which its plant does not have; "
-            "find the plan again"
-        )
-    there = plan.candidate.perturbed(stated.errors).residual
-    for gives, words in (worst.residual, ""), (there, " with these errors"):
-        if not agrees(stated.residual, gives, REST):
-            unit = plan.task.plant.tip_unit
-            raise ValueError(
-                f"{path} states a worst-case residual of {stated.residual:.4g} {unit}, but its "
-                f"coefficients give {gives:.4g} {unit}{words}; find the plan again"
-            )

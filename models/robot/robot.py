@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from quietarm.interrupts import interruptible
+from quietarm.models import dimensions
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import (
     Array,
@@ -21,7 +22,6 @@ from quietarm.models.joint_motion import (
     JointMotion,
     Modes,
     is_zero,
-    joint_unit,
     kind_of_joints,
 )
 from quietarm.models.notes import Note
@@ -289,7 +289,7 @@ class Robot(MovingRobot):
             values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
             what = f"of {name} in {entry}"
             stiffness, damping = (
-                joint_unit(unit, self.kind_of(name)) for unit in ("N m/rad", "N m s/rad")
+                unit.of(self.kind_of(name)) for unit in (dimensions.STIFFNESS, dimensions.DAMPING)
             )
             found[name] = Spring(
                 positive(f"stiffness {what}", values.stiffness, stiffness),

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
+from quietarm.ocp.figures import ENERGY, Figures
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
@@ -53,35 +54,22 @@ OF_A_PLAN = Tolerances()
 56 plans tried (6e-6)."""
 
 
-@dataclass(frozen=True)
-class FinerFigures(Ranged):
-    """Energy [J], residual [m] and state on arrival by finer steps; whether CVODES confirmed them.
-
-    The state has shape (1, 2 * modes).
-    """
-
-    energy: float
-    residual: float
-    arrival: Array
-    by_cvodes: bool = False
-
-    def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """As of `Ranged`, of the residual alone."""
-        del quantity
-        return -self.residual, self.residual
-
-
-Judgement = Candidate | FinerFigures
-"""What another integrator says of a motion."""
+Judgement = Candidate | Figures
+"""What another integrator says of a motion: CVODES; or by finer steps energy, residual and
+`arrival`, the state of shape (1, 2 * modes)."""
 
 
 @dataclass(frozen=True)
 class Certified:
-    """A solution with what another integrator says, and the problem, tightened, that it solves."""
+    """A solution with what another integrator says, and the problem, tightened, that it solves.
+
+    Whether that is CVODES' word, or CVODES confirmed it, `by_cvodes` tells.
+    """
 
     solution: Solution
     checked: Judgement
     problem: Program
+    by_cvodes: bool
 
     @property
     def steps(self) -> int:
@@ -178,7 +166,8 @@ class _Row:
 
     def note(self, judgement: Judgement) -> None:
         """Note what another integrator says of the last solution."""
-        self.tried.append(Certified(self.solution, judgement, self.problem))
+        by_cvodes = isinstance(judgement, Candidate)
+        self.tried.append(Certified(self.solution, judgement, self.problem, by_cvodes))
         self.tightened = tighten(self.tightened, judgement, self.limits)
 
     def go_on_from(self, solution: Solution, problem: Program) -> None:
@@ -304,12 +293,12 @@ def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
         for i, row in enumerate(alike):
             task = row.problem.task
             check_motion(row.problem.profile, row.solution.coefficients, *task.move)
-            figures = FinerFigures(
-                float(evaluation.energy[i, 0]),
-                float(evaluation.residual[i, 0]),
-                evaluation.arrival[i],
-            )
-            row.note(figures)
+            figures = {
+                ENERGY: float(evaluation.energy[i, 0]),
+                RESIDUAL: float(evaluation.residual[i, 0]),
+                "arrival": evaluation.arrival[i],
+            }
+            row.note(Figures(figures))
 
 
 def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[Outcome]:
@@ -323,13 +312,12 @@ def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[O
         if isinstance(outcome, SolverFailedError):
             continue
         figures = outcome.checked
-        assert isinstance(figures, FinerFigures)
         exact = by_cvodes(outcome.problem, outcome.solution.coefficients)
         energy_differs = abs(exact.energy - figures.energy) > agreement * exact.energy
         tolerated = agreement * exact.residual + still_of(exact.task)
         if energy_differs or abs(exact.residual - figures.residual) > tolerated:
             return []
-        confirmed[i] = replace(outcome, checked=replace(figures, by_cvodes=True))
+        confirmed[i] = replace(outcome, by_cvodes=True)
     return confirmed
 
 

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
-from quietarm.ocp.planning.certify import Certified, FinerFigures, certify, finer_peaks
+from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
@@ -254,11 +255,10 @@ class _Table:
         self._coefficients[i] = certified.solution.coefficients
         self._energy[i] = judgement.energy
         self._residual[i] = judgement.residual
-        if isinstance(judgement, FinerFigures):
-            self._by_cvodes[i] = judgement.by_cvodes
+        self._by_cvodes[i] = certified.by_cvodes
+        if not isinstance(judgement, Candidate):
             self._by_finer_steps.append(i)
             return
-        self._by_cvodes[i] = True
         for name, values in self._peaks.items():
             values[i] = judgement.motion.peak(name)
 

@@ -14,7 +14,7 @@ from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.evaluation.population import ACCURACY
 from quietarm.metaheuristics.score import HYPERVOLUME, INDICATORS, Indicator
 from quietarm.ocp.front.points import LEVELS
-from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure
+from quietarm.studies.bench.bench_pictures import curves_figure, profiles_figure, ranks_figure
 from quietarm.studies.bench.results import (
     ENERGIES,
     MISSING,
@@ -107,7 +107,7 @@ def bench_report(
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "repeated": _repeated(results),
         "copies": [run.label for run in results.copies],
-        "unsealed": results.unsealed,
+        "imported": results.imported,
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }

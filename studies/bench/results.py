@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics import Job, NamedProblem
 from quietarm.metaheuristics.named_method import NamedMethod
-from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
     INDICATORS,
@@ -185,9 +184,9 @@ class Results:
         return [run for run in self.runs if run.imported and run.copies_reference]
 
     @property
-    def unsealed(self) -> int:
-        """How many runs are no bench's by its checksum: imported ones, and files of before."""
-        return sum(run.imported or not is_sealed(run.front) for run in self.runs)
+    def imported(self) -> int:
+        """How many runs are not of this bench."""
+        return sum(run.imported for run in self.runs)
 
     def is_repeated(self, problem: str, method: str) -> bool:
         """Whether a method found the same from every seed: its runs are one, not independent.

@@ -13,6 +13,7 @@ from quietarm.models import Plant
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.planning.named_profiles import profile_of
 from quietarm.ocp.solvers.choice import SOLVERS
+from quietarm.ocp.task import OF_MOVES
 from quietarm.studies.cli.effort import announce_minutes, refuse_endless, seconds_of_solve
 from quietarm.studies.cli.plants import Kind, build_plant, choose_kind, parameters_of
 from quietarm.studies.cli.quantities import (
@@ -21,8 +22,8 @@ from quietarm.studies.cli.quantities import (
     parse_parameters,
     single_values,
 )
-from quietarm.studies.cli.task import read_grid, read_task
-from quietarm.studies.sweep.move_grid import OF_MOVES, MoveGrid
+from quietarm.studies.cli.read_task import read_grid, read_task
+from quietarm.studies.sweep.move_grid import MoveGrid
 
 
 class Given:
@@ -54,16 +55,20 @@ class Given:
         """The whole line that was typed."""
         return shlex.join(["quietarm", *self._context.obj])
 
+    @property
+    def _params(self) -> list[click.Parameter]:
+        return self._context.command.get_params(self._context)
+
     def refuse(self, names: Collection[str], why: str) -> None:
         """Refuse options that were typed where they have no meaning."""
-        for param in self._context.command.params:
+        for param in self._params:
             if param.name in names and self.typed(param.name):
                 name = param.opts[0] if isinstance(param, click.Option) else param.name.upper()
                 raise ValueError(f"{name} {why}; leave it out")
 
     def refuse_others(self, than: Collection[str], why: str) -> None:
         """Refuse all options that were typed but some."""
-        names = {param.name for param in self._context.command.params if param.name}
+        names = {param.name for param in self._params if param.name}
         self.refuse(names - {*than}, why)
 
     def read_residual_limit(self, plant: Plant) -> float | None:

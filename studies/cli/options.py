@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, get_args
@@ -15,7 +15,7 @@ from rich.console import Console
 
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.named_profiles import POLYNOMIAL, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -55,9 +55,21 @@ COMMON = (
 class Command(click.Command):
     """A command with the options that all have; its function takes what was `Given`."""
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse a line; quantities of a plant file are options already."""
+        for file in _plant_files(args):
+            with suppress(ValueError):  # the option's own reading says what is wrong
+                load_plant_file(file)
+        return super().parse_args(ctx, args)
+
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Its own options and those of all commands."""
+        """Its own options, limits of quantities of one's own, and those of all commands."""
         *params, help_option = super().get_params(ctx)
+        names = [param.name for param in params]
+        if LIMITS[-1].name in names:
+            last = names.index(LIMITS[-1].name) + 1
+            added = [quantity for quantity in QUANTITIES.values() if quantity.limit not in names]
+            params[last:last] = map(limit_option, added)
         return [*params, *COMMON, help_option]
 
     def invoke(self, ctx: click.Context) -> None:
@@ -66,6 +78,15 @@ class Command(click.Command):
         _refuse_lost_answer(ctx)
         if self.callback is not None:
             self.callback(Given(ctx))
+
+
+def _plant_files(args: Iterable[str]) -> Iterator[str]:
+    """The files of `--plant-file` on a line."""
+    following = iter(args)
+    for word in following:
+        name, equals, file = word.partition("=")
+        if name == "--plant-file":
+            yield file if equals else next(following, "")
 
 
 def command(*params: click.Parameter) -> Callable[[Callable[[Given], None]], click.Command]:
@@ -110,6 +131,13 @@ def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int
     return count(total, what, progress_console())
 
 
+def limit_option(quantity: Quantity) -> click.Option:
+    """The option of a quantity's limit."""
+    words = f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST."
+    return option(quantity.option, metavar=f"[{quantity.unit}]", help=words)
+
+
+LIMITS = tuple(map(limit_option, QUANTITIES.values()))
 SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
              help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.")  # fmt: skip
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
@@ -141,11 +169,7 @@ TASK = (
     *ENDS,
     option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),
-    *(
-        option(quantity.option, metavar=f"[{quantity.unit}]",
-               help=f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST.")
-        for quantity in QUANTITIES.values()
-    ),
+    *LIMITS,
     option("--torque-speed", metavar="TORQUE@SPEED", help="Torque limit by speed, as points: "
            "1.5Nm@0,0.8Nm@190rpm; of a linear axis 100N@0,40N@500mm/s."),
     option("--residual-window", type=TIME,

@@ -12,7 +12,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.run_files import SEALS
+from quietarm.metaheuristics.run_files import BESIDE_SETTINGS
 from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
@@ -322,7 +322,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
     settings = {"bound": front.record.bound, **front.record.settings}
-    for name in SEALS:  # of a bench's run, and no setting of its method
+    for name in BESIDE_SETTINGS:  # of a bench's run, and no setting of its method
         settings.pop(name, None)
     return {**settings, "profile": profile.pop("name"), **profile}
 

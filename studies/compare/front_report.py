@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from pathlib import Path
 
 import pandas as pd
 
@@ -158,7 +157,6 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
 def fronts_report(
     comparisons: Sequence[Comparison],
     known: Sequence[Sequence[KnownPoint]],
-    unsealed: Sequence[Path] = (),
 ) -> Report:
     """Compared fronts of one task or several, with known points of each for its picture.
 
@@ -181,7 +179,6 @@ def fronts_report(
             "residual_place": residual_place,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
-            "unsealed": unsealed,
             "indicators": INDICATORS,
             "several": any(
                 len(group.runs) > 1 for comparison in comparisons for group in comparison.groups

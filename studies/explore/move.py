@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 from quietarm.metaheuristics import PAPER_BOX
 from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models.dimensions import WAY
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import Front, Plan, PointToPoint, epsilon_front, evaluate_coefficients, plan_move
 from quietarm.ocp.front.tradeoff import Progress, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
@@ -121,13 +122,13 @@ class Explored:
         joint = self.task.plant.joint
         tip_unit = task.plant.tip_unit
         way = tau if joint == ROTARY else max(_FURTHEST, abs(task.start), abs(task.target))
-        ends = dict.fromkeys(OF_MOVES, (joint_unit("rad", joint), -way, way))
+        ends = dict.fromkeys(OF_MOVES, (WAY.of(joint), -way, way))
         ends["duration"] = "s", min(_SHORTEST, task.duration), max(_LONGEST, task.duration)
         for axis in self.library.grid.axes if self.library else ():
             ends[axis.name] = axis.unit, axis.values[0], axis.values[-1]
         quantities = quantities_of(joint, tip_unit).values()
         limits = {
-            quantity.limit: (joint_label(quantity.name, joint), raised(quantity.unit))
+            quantity.limit: (str(quantity.words), raised(str(quantity.unit)))
             for quantity in quantities
         }
         limits |= {"residual_limit": ("residual", tip_unit), "bound": ("largest |a_n|", "-")}

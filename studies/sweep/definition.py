@@ -204,9 +204,10 @@ class Definition:
             "iterations": "1",
             "cold_excess": "1",
         }
-        units |= {entry.peak: entry.unit for entry in quantities_of(task.plant.joint, tip).values()}
+        quantities = quantities_of(task.plant.joint, tip).values()
+        units |= {quantity.peak: str(quantity.unit) for quantity in quantities}
         units |= {
-            f"price_{entry.name}": f"J/({entry.quantity.unit or '1'})" for entry in task.limits
+            f"price_{entry.name}": f"J/({str(entry.quantity.unit) or '1'})" for entry in task.limits
         }
         for name in OF_MODES:
             units |= {f"energy_by_{name}": "J", f"residual_by_{name}": tip}

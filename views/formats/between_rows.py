@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Expression, JointMotion
-from quietarm.models.joint_motion import joint_label
+from quietarm.models.dimensions import ANGLE
 from quietarm.ocp import Candidate, Plan
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
@@ -57,7 +57,7 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
         words = tip_words(residual, plant.tip_unit)
         if residual <= most:
             return note and f"{note}; --rate {rate:g} leaves {words}"
-        between = _BETWEEN[derivatives].format(joint_label("angle", plant.joint))
+        between = _BETWEEN[derivatives].format(ANGLE.of(plant.joint))
         coarse = f"{rate:g} Hz is coarse: a controller that interpolates by {between} leaves"
         note = note or f"{coarse} {words}"
         rate *= 2

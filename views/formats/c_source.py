@@ -10,9 +10,12 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import JointMotion, joint_unit
+from quietarm.models.dimensions import WAY
+from quietarm.models.joint_motion import JointMotion
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import c_comment, c_string
+from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.limits import EXPORT
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
 from quietarm.views.report.templates import templates
@@ -43,7 +46,8 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         residual = tip_words(moves.residual, task.plant.tip_unit)
         figures = f"energy {moves.energy:.4g} J, residual {residual} "
         figures += window_words(task.residual_window)
-        figures = ", ".join([figures, *limit_words(task)])
+        added = added_words(moves.candidate, EXPORT)
+        figures = ", ".join([figures, *added, *limit_words(task)])
     else:
         task = moves.grid.task
         versions = moves.store.note("versions")
@@ -63,7 +67,7 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         texts.get_template(f"views/formats/templates/move.{kind}").render(
             name=name, upper=name.upper(), size=moves.profile.size, title=title,
             figures=figures[0].upper() + figures[1:], version=versions.get("quietarm", ""),
-            unit=joint_unit("rad", task.plant.joint), axes=axes, between=between,
+            unit=WAY.of(task.plant.joint), axes=axes, between=between,
             most=between and between.most_cells,
             move=move | {axis.name: axis.name for axis in axes if axis.name in move},
             coefficients=() if between else moves.coefficients, helpers=helpers,

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion, joint_label
+from quietarm.models.dimensions import words_of
+from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.escapes import csv_table, matlab_names, yaml_string
@@ -68,7 +69,7 @@ def columns_of(text: str, plant: Plant) -> dict[str, Units]:
     """
     kinds = [*plant.joint_kinds, *map(plant.kind_of, plant.followers)]
     by_kind = {kind: units_of(kind, plant.tip_unit) for kind in dict.fromkeys(kinds)}
-    words = {joint_label(name, kind): name for kind in by_kind for name in by_kind[kind]}
+    words = {words_of(name).of(kind): name for kind in by_kind for name in by_kind[kind]}
     words |= {name: name for units in by_kind.values() for name in units}
     columns = dict[str, Units]()
     for heading in text.split(","):
@@ -132,7 +133,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
                 for joint, motion in following.items()
             ]
         return {
-            _heading(f"{front}{joint_label(name, kind)}", units[kind][0]): units[kind][1] * column
+            _heading(f"{front}{words_of(name).of(kind)}", units[kind][0]): units[kind][1] * column
             for front, kind, column in rows
         }
 

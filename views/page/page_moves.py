@@ -16,7 +16,6 @@ from quietarm.ocp import (
     evaluate_coefficients,
     task_difference,
 )
-from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.views.pictures import KnownPoint
@@ -139,8 +138,7 @@ def _belong_together(first: Front | Plan, answer: Front | Plan) -> bool:
     """Whether F1 and F2 mean the same, and of two fronts the limits are the same, too."""
     tasks = [first.task, answer.task]
     if not (isinstance(first, Front) and isinstance(answer, Front)):
-        limits = [*(quantity.limit for quantity in QUANTITIES.values()), "torque_speed"]
-        tasks = [replace(task, **dict.fromkeys(limits)) for task in tasks]
+        tasks = [replace(task, bounds={}, torque_speed=None) for task in tasks]
     return not task_difference(*tasks)
 
 

@@ -26,7 +26,7 @@ from quietarm.views.page.page_moves import (
     moves_of,
 )
 from quietarm.views.page.page_words import (
-    Figures,
+    ShownFigures,
     figure_names,
     robust_note,
     sentence,
@@ -385,7 +385,7 @@ def _point(move: Move, choice: Choice) -> dict[str, Any]:
 
 def _place(move: Move, choice: Choice) -> dict[str, Any]:
     """A motion's place on the front, and its figures."""
-    figures = Figures.of(choice.plan, choice.residual, choice.energy)
+    figures = ShownFigures.of(choice.plan, choice.residual, choice.energy)
     return {
         "name": choice.name,
         "residual": choice.residual,

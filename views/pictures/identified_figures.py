@@ -14,7 +14,7 @@ from quietarm.machine import Recording
 from quietarm.machine.identify import Identified, Part
 from quietarm.machine.identify.fits.diagnosis import spectrum_of
 from quietarm.machine.identify.identification import curve_of
-from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.dimensions import EFFORT, words_of
 from quietarm.models.plant import FREQUENCY
 from quietarm.views.pictures.axes import new_figure
 from quietarm.views.pictures.grammar import BLUE, FAINT, GREY, INK, RED
@@ -58,7 +58,8 @@ def identification_figure(machine: Identified, recordings: Sequence[Recording]) 
 
 def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[Recording]) -> None:
     """Measured and fitted, the residuals, and their spectrum."""
-    units = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": "N m"}
+    effort = EFFORT.of(machine.plant.joint)
+    units = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": effort}
     grid = row.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(2, 1))
     over = row.add_subplot(grid[0, 0])
     below = row.add_subplot(grid[1, 0], sharex=over)
@@ -78,8 +79,8 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
     )  # fmt: skip
     quantity = next(iter(recording.signals))
     joint = machine.plant.joint
-    unit = joint_unit(units[quantity], joint)
-    over.set_ylabel(f"{joint_label(quantity, joint)}\n[{unit}]", fontsize=8)
+    label = words_of(quantity).of(joint)
+    over.set_ylabel(f"{label}\n[{units[quantity]}]", fontsize=8)
     over.tick_params(labelbottom=False)
     gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
     below.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)

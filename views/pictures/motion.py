@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY, joint_label
+from quietarm.models.dimensions import WATT, WAY, Unit, Words
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
-from quietarm.ocp.limits import QUANTITIES, Shares, unit_of, units_of_joints
+from quietarm.ocp.limits import QUANTITIES, Shares, units_of_joints
 from quietarm.views.pictures.axes import (
     TITLE,
     axes_or_new,
@@ -43,22 +44,11 @@ _NUMBERS = 0.45
 _BESIDE_JOINTS = 0.7
 """Width of a panel of a joint, of its numbers and beside all panels [inch]: of five quantities
 the picture is 10.2 inches wide; in a page of 736 pixels its letters of 9 points are 9 high."""
-_LABELS = {
-    "angle": ("joint angle", "rad"),
-    "power": ("power", "W"),
-    **{quantity.name: (quantity.label, quantity.unit) for quantity in QUANTITIES.values()},
+_BESIDE_QUANTITIES: Mapping[str, tuple[Words, Unit]] = {
+    "angle": (Words("joint angle", "joint position"), WAY),
+    "power": (Words("power"), WATT),
 }
-QUANTITIES_DRAWN = (
-    "angle",
-    *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel),
-    "power",
-)
-"""What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
-_ALWAYS_DRAWN = (
-    "angle",
-    *(name for name, quantity in QUANTITIES.items() if quantity.always_drawn),
-)
-"""These are panels of every motion; others are where a task limits them."""
+"""What is drawn that a task does not limit."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -95,6 +85,23 @@ Motions = Sequence[Line] | Plan | Floor
 
 
 @interruptible
+def drawn_quantities() -> tuple[str, ...]:
+    """What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
+    return ("angle", *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel), "power")
+
+
+def _is_always_drawn(name: str) -> bool:
+    """Whether it is a panel of every motion; others are where a task limits them."""
+    return QUANTITIES[name].always_drawn if name in QUANTITIES else name == "angle"
+
+
+def _words_and_unit(quantity: str) -> tuple[Words, Unit]:
+    if quantity in _BESIDE_QUANTITIES:
+        return _BESIDE_QUANTITIES[quantity]
+    return QUANTITIES[quantity].label, QUANTITIES[quantity].unit
+
+
+@interruptible
 def draw_quantity(
     motions: Motions, quantity: str, ax: Axes | None = None, *, curve: int | None = None
 ) -> Axes:
@@ -105,7 +112,7 @@ def draw_quantity(
     motions : sequence of Line, Plan or Floor
         The motions; a plan alone is drawn over the plain cycloid of its task.
     quantity : str
-        A name in `QUANTITIES_DRAWN`: angle, speed, acceleration, jerk, deflection, torque or power.
+        A name of `drawn_quantities`: angle, speed, acceleration, jerk, deflection, torque or power.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
     curve : int, optional
@@ -122,8 +129,8 @@ def draw_quantity(
     ValueError
         When there is no motion, or the quantity is not known.
     """
-    if quantity not in QUANTITIES_DRAWN:
-        raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
+    if quantity not in drawn_quantities():
+        raise ValueError(unknown("quantity", quantity, drawn_quantities()))
     return _draw(lines_of(motions), quantity, axes_or_new(ax), curve)
 
 
@@ -216,9 +223,9 @@ def _which_tip(plant: Plant, curve: int) -> str:
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
-    label, unit = _LABELS[quantity]
-    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(unit_of(unit, joint, tip_unit))
-    return f"{joint_label(label, joint)} [{unit}]"
+    label, unit = _words_and_unit(quantity)
+    shown = tip_scale(tip_unit)[0] if unit.is_tip_way else raised(unit.of(joint, tip_unit))
+    return f"{label.of(joint)} [{shown}]"
 
 
 def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> str:
@@ -230,7 +237,7 @@ def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> s
 
 def scale_of(quantity: str, tip_unit: str = "m") -> float:
     """From the quantity's unit to the one that is shown."""
-    return tip_scale(tip_unit)[1] if _LABELS[quantity][1] == "m" else 1.0
+    return tip_scale(tip_unit)[1] if _words_and_unit(quantity)[1].is_tip_way else 1.0
 
 
 @interruptible
@@ -247,7 +254,7 @@ def motion_figure(
         Title of the picture; by default what the motions take and leave, how that is verified, and
         of which plant, move and limits.
     quantities : sequence of str, optional
-        Names in `QUANTITIES_DRAWN`; by default all but the power, and the jerk where it is limited.
+        Names of `drawn_quantities`; by default all but the power, and the jerk where it is limited.
         `PAPER_PANELS` are those of the paper.
 
     Returns
@@ -264,7 +271,9 @@ def motion_figure(
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
-        quantities = [name for name in QUANTITIES_DRAWN if name in limited or name in _ALWAYS_DRAWN]
+        quantities = [
+            name for name in drawn_quantities() if name in limited or _is_always_drawn(name)
+        ]
     if len(lines[0].plan.task.plant.joint_names) > 1 and len(quantities) > 1:
         return _figure_of_joints(lines, title, quantities)
     count = len(quantities)

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
+from quietarm.models.dimensions import ACCELERATION, EFFORT, JERK, SPEED, Unit
+from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.models.notes import Note
 from quietarm.models.number_checks import (
     clipped,
@@ -40,7 +41,7 @@ class _Bound:
     has: str
     most: str
     quantity: str
-    unit: str
+    unit: Unit
     least: str = ""
 
     @property
@@ -50,12 +51,12 @@ class _Bound:
 
 
 _BOUNDS = (
-    _Bound("has_velocity_limits", "max_velocity", "speed", "rad/s", "min_velocity"),
-    _Bound("has_acceleration_limits", "max_acceleration", "acceleration", "rad/s^2",
+    _Bound("has_velocity_limits", "max_velocity", "speed", SPEED, "min_velocity"),
+    _Bound("has_acceleration_limits", "max_acceleration", "acceleration", ACCELERATION,
            "min_acceleration"),
-    _Bound("has_deceleration_limits", "max_deceleration", "acceleration", "rad/s^2"),
-    _Bound("has_jerk_limits", "max_jerk", "jerk", "rad/s^3", "min_jerk"),
-    _Bound("has_effort_limits", "max_effort", "torque", "N m", "min_effort"),
+    _Bound("has_deceleration_limits", "max_deceleration", "acceleration", ACCELERATION),
+    _Bound("has_jerk_limits", "max_jerk", "jerk", JERK, "min_jerk"),
+    _Bound("has_effort_limits", "max_effort", "torque", EFFORT, "min_effort"),
 )  # fmt: skip
 _POSITION = ("has_position_limits", "min_position", "max_position")
 _SOFT = ("has_soft_limits", "k_position", "k_velocity", "soft_lower_limit", "soft_upper_limit")
@@ -234,7 +235,7 @@ class _Entries:
         """Sizes of a quantity's bounds that are in force, by their names."""
         if not self.applies(bound.has, bound.most):
             return {}
-        unit = joint_unit(bound.unit, LINEAR if self.slides else ROTARY)
+        unit = bound.unit.of(LINEAR if self.slides else ROTARY)
         most = self.number(bound.most, unit)
         if bound.most == "max_deceleration":  # MoveIt's are negative
             most = abs(most)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -77,7 +76,6 @@ def compare(given: Given) -> None:
 
 def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
     """Plans and baselines; `measured` errors are those that the plans are made for."""
-    from quietarm.studies.answers.read_answers import without_checksum
     from quietarm.studies.compare.judged_motions import merged_ranges
     from quietarm.studies.compare.plan_comparison import compare_plans, plans_report
 
@@ -92,11 +90,11 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
         ranges = {**measured, **ranges}
     judged = compare_plans(plans, given.baselines or (), ranges, given.samples)
     first_task = next(iter(plans.values())).task
-    return plans_report(first_task, judged, without_checksum(given.files))
+    return plans_report(first_task, judged)
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
-    from quietarm.studies.answers.read_answers import load_front, without_checksum
+    from quietarm.studies.answers.read_answers import load_front
     from quietarm.studies.compare.front_report import compare_by_task, fronts_report
     from quietarm.studies.reproduce.paper import paper_points
 
@@ -111,7 +109,7 @@ def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
     ]
     for comparison in comparisons:
         warn_of_notes(comparison.task.plant)
-    return fronts_report(comparisons, of_paper, without_checksum(map(Path, fronts)))
+    return fronts_report(comparisons, of_paper)
 
 
 def _with_floor(comparison: Comparison, solver: Solver) -> Comparison:

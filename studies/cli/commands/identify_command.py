@@ -18,7 +18,7 @@ from quietarm.machine.recordings.read_recording import (
     read_recording,
 )
 from quietarm.models import Plant
-from quietarm.models.joint_motion import joint_label
+from quietarm.models.dimensions import words_of
 from quietarm.ocp.checks import has_no
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
@@ -167,7 +167,7 @@ def _refuse_idle(
     """Refuse units and scales of quantities of which no column is read."""
     read = {quantity for quantity, columns in names.items() if columns}
     read |= set() if has_rate else {"time"}
-    read |= {joint_label(quantity, joint) for quantity in read}
+    read |= {words_of(quantity).of(joint) for quantity in read}
     for option_name, entries in options.items():
         for quantity in entries:
             if quantity not in read:

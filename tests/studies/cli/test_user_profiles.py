@@ -12,7 +12,7 @@ from quietarm.ocp import Front, Plan
 
 ROOT = Path(__file__).parents[3]
 PACKAGES = "quietarm", "models", "ocp", "metaheuristics", "studies"
-(PROFILE,) = blocks("extend", "python")
+PROFILE, _ = blocks("extend", "python")
 MOVE = "--target 60deg --duration 3 --profile minimum-jerk --quiet"
 LEAST_JERK_SPEED = 15 / 8
 """Largest speed of the motion of least jerk over the mean: 30 s^2 (1 - s)^2 at s = 1/2."""

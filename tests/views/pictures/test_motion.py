@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from several_joints import TwoLinks
 
 from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients
-from quietarm.views.pictures import QUANTITIES_DRAWN, Line, draw_quantity, motion_figure
+from quietarm.views.pictures import Line, draw_quantity, drawn_quantities, motion_figure
 from quietarm.views.report.words import move_of
 
 
@@ -145,7 +145,7 @@ def limits(axis):
 def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     motion = evaluate_coefficients(dataclasses.replace(task, **limit), [])
     drawn = [Line(motion, "cycloid")]
-    found = {name: limits(draw_quantity(drawn, name)) for name in QUANTITIES_DRAWN}
+    found = {name: limits(draw_quantity(drawn, name)) for name in drawn_quantities()}
     assert {name: at for name, at in found.items() if at} == {
         name: pytest.approx(at) for name, at in shown.items()
     }
