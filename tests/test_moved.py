@@ -5,6 +5,7 @@ import importlib
 import pytest
 
 import quietarm as qa
+from quietarm.moved import ROOMS, MovedRooms
 
 
 def test_a_name_that_has_moved_says_where_it_is():
@@ -18,9 +19,18 @@ def test_a_name_that_has_moved_says_where_it_is():
         ("studies.identify", "machine.identify"),
         ("studies.figures.motion", "views.pictures"),
         ("studies.export", "views"),
+        ("metaheuristics.gradient", "metaheuristics.methods.gradient_methods"),
+        ("models.checks", "models.number_checks"),
     ],
 )
 def test_a_room_that_has_moved_says_where_it_is(room, now):
     with pytest.raises(ImportError, match=rf"has moved to quietarm\.{now}$"):
         importlib.import_module(f"quietarm.{room}")
     importlib.import_module(f"quietarm.{now}")
+
+
+def test_every_place_that_is_named_is_there():
+    for room, now in ROOMS.items():
+        importlib.import_module(f"quietarm.{now}")
+        with pytest.raises(ImportError, match=rf"{room} has moved to quietarm\.{now}$"):
+            MovedRooms.find_spec(f"quietarm.{room}")
