@@ -45,7 +45,7 @@ from .profiles.term_profile import MAX_TERMS as MAX_TERMS
 from .profiles.term_profile import TermProfile as TermProfile
 from .record import Record as Record
 from .record import Verification as Verification
-from .robustness import Figures as Figures
+from .robustness import PlantFigures as PlantFigures
 from .robustness import Robustness as Robustness
 from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep

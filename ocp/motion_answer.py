@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self
 
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import IF_STATED
-from quietarm.ocp.record import Verification
+from quietarm.ocp.record import Record, Verification
 from quietarm.ocp.robustness import Worst
 from quietarm.ocp.saved import Answer, plain, read_content, refusals, typed
 from quietarm.ocp.simulation.objective import Motion
@@ -81,6 +81,7 @@ class MotionAnswer(Answer):
 
     earlier: ClassVar[tuple[int, ...]]
     """Versions of its file that held every figure, and are read as well."""
+    record: Record
 
     @cached_property
     def candidate(self) -> Candidate:

@@ -25,7 +25,6 @@ from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.json_text import LEAVES, refuse_repeated, texts_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
-from quietarm.ocp.record import Record
 
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
@@ -338,8 +337,11 @@ def refusals(path: str | Path, kind: str) -> Iterator[None]:
         raise FileFormatError(f"{path} is not a valid {kind}: {error}{remedy}") from None
 
 
-class Saved:
-    """An answer that has a file of its attributes: JSON, versioned, never executed."""
+class Answer:
+    """What was found, with a file of its attributes: JSON, versioned, never executed.
+
+    A subclass is a dataclass.
+    """
 
     kind: ClassVar[str]
     """What it is, in a word; its format is named quietarm-<kind>."""
@@ -347,6 +349,8 @@ class Saved:
     """Version of its format, as it is written."""
     earlier: ClassVar[tuple[int, ...]] = ()
     """Versions that are read as well; files of any other are refused."""
+    sealed: ClassVar[bool] = True
+    """Whether its file has a checksum, and is refused without; `earlier` versions had none."""
 
     @interruptible
     def save(self, path: str | Path) -> None:
@@ -355,7 +359,11 @@ class Saved:
 
     def _text(self) -> str:
         """What its file says."""
-        return texts_of(self._document()).indented
+        texts = texts_of(self._document())
+        if not self.sealed:
+            return texts.indented
+        entries = texts.indented.removesuffix("\n}")
+        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
 
     def _document(self) -> dict[str, Any]:
         return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
@@ -384,24 +392,8 @@ class Saved:
     @classmethod
     def _check_document(cls, document: Mapping[str, Any], version: int) -> None:
         """Refuse a document that was changed since it was written, where its format tells."""
-
-    @classmethod
-    def _entries_of(cls, content: Mapping[str, Any], version: int) -> Mapping[str, Any]:
-        """The entries of an answer among the content of its file, as they are today."""
-        del version
-        return content
-
-
-class Answer(Saved):
-    """What a method found. A subclass is a dataclass with the entry below.
-
-    Its file has a checksum, and is refused without: only versions before had none.
-    """
-
-    record: Record
-
-    @classmethod
-    def _check_document(cls, document: Mapping[str, Any], version: int) -> None:
+        if not cls.sealed:
+            return
         unchanged = _is_unchanged(document)
         if unchanged or (unchanged is None and version in cls.earlier):
             return
@@ -411,12 +403,8 @@ class Answer(Saved):
             "evaluate its coefficients by quietarm evaluate"
         )
 
-    def _text(self) -> str:
-        texts = texts_of(self._document())
-        entries = texts.indented.removesuffix("\n}")
-        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
-
-    def restated(self, **changes: Any) -> Self:
-        """The same answer with other entries of its record."""
-        answer: Any = self
-        return dataclasses.replace(answer, record=dataclasses.replace(self.record, **changes))
+    @classmethod
+    def _entries_of(cls, content: Mapping[str, Any], version: int) -> Mapping[str, Any]:
+        """The entries of an answer among the content of its file, as they are today."""
+        del version
+        return content

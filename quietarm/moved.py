@@ -7,6 +7,8 @@ from types import ModuleType
 
 MOVED = {"figures": "pictures"}
 """Names of `qa`."""
+MOVED_IN_OCP = {"Figures": "PlantFigures"}
+"""Names of `qa.ocp`."""
 
 _ROOMS = {
     "studies.identify": "machine.identify",
