@@ -12,6 +12,7 @@ from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import clipped, quoted
 from quietarm.ocp.figures import ENERGY, Figures, figures_in
 from quietarm.ocp.limits import FILE, RESIDUAL
+from quietarm.ocp.record import Record
 from quietarm.ocp.saved import Answer, read_content, refusals
 
 STATED = "stated"
@@ -24,6 +25,8 @@ class MotionAnswer(Answer):
     What is computed of the motion is computed once, and stays with an answer that differs in other
     entries alone (`with_entries`).
     """
+
+    record: Record
 
     @cached_property
     def candidate(self) -> Candidate:

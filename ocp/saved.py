@@ -27,7 +27,6 @@ from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.json_text import LEAVES, refuse_repeated, texts_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
-from quietarm.ocp.record import Record
 
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
@@ -272,12 +271,12 @@ def read_document(path: str | Path, kind: str) -> Any:
     return document
 
 
-def read_content(path: str | Path, kind: type[Saved]) -> dict[str, Any]:
+def read_content(path: str | Path, kind: type[Answer]) -> dict[str, Any]:
     """What the file of an answer holds beside format, version and checksum; both are checked."""
     return _content_of(read_document(path, kind.kind), path, kind)
 
 
-def _content_of(document: Any, path: str | Path, kind: type[Saved]) -> dict[str, Any]:
+def _content_of(document: Any, path: str | Path, kind: type[Answer]) -> dict[str, Any]:
     """What a document holds beside format, version and checksum; both are checked."""
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
@@ -338,8 +337,13 @@ def refusals(path: str | Path, kind: str) -> Iterator[None]:
         raise FileFormatError(f"{path} is not a valid {kind}: {error}{remedy}") from None
 
 
-class Saved:
-    """An answer that has a file of its attributes: JSON, versioned, never executed."""
+class Answer:
+    """What was found, with a file of its attributes: JSON, versioned, never executed.
+
+    A subclass is a dataclass. A sealed file has a checksum of all other entries, and is refused
+    without. It tells changes of what no evaluation tells: candidates, iterations, time, method.
+    Whoever computes the checksum again can write what they like.
+    """
 
     kind: ClassVar[str]
     """What it is, in a word; its format is named quietarm-<kind>."""
@@ -347,6 +351,8 @@ class Saved:
     """Version of its format, as it is written."""
     read_by_2_0: ClassVar[tuple[int, ...]] = ()
     """Versions of before 2.0.0 that 2.0.0 reads, and writes in the present one."""
+    sealed: ClassVar[bool] = True
+    """Whether its file has a checksum, and is refused without."""
 
     @interruptible
     def save(self, path: str | Path) -> None:
@@ -355,7 +361,11 @@ class Saved:
 
     def _text(self) -> str:
         """What its file says."""
-        return texts_of(self._document()).indented
+        texts = texts_of(self._document())
+        if not self.sealed:
+            return texts.indented
+        entries = texts.indented.removesuffix("\n}")
+        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
 
     def _document(self) -> dict[str, Any]:
         return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
@@ -384,27 +394,8 @@ class Saved:
     @classmethod
     def _check_document(cls, document: Mapping[str, Any]) -> None:
         """Refuse a document that was changed since it was written, where its format tells."""
-
-    @classmethod
-    def _entries_of(cls, content: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The entries of an answer among the content of its file."""
-        return content
-
-
-class Answer(Saved):
-    """What a method found. A subclass is a dataclass with the entry below.
-
-    Its file has a checksum of all other entries, and is refused without. It tells changes of what
-    no evaluation tells: candidates, iterations, time, method. Whoever computes the checksum again
-    can write what they like.
-    """
-
-    record: Record
-
-    @classmethod
-    def _check_document(cls, document: Mapping[str, Any]) -> None:
         stated = document.get(CHECKSUM)
-        if stated == _checksum_of(document):
+        if not cls.sealed or stated == _checksum_of(document):
             return
         why = "it has no checksum" if stated is None else "its checksum is of other entries"
         raise ValueError(
@@ -412,12 +403,7 @@ class Answer(Saved):
             "evaluate its coefficients by quietarm evaluate"
         )
 
-    def _text(self) -> str:
-        texts = texts_of(self._document())
-        entries = texts.indented.removesuffix("\n}")
-        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
-
-    def restated(self, **changes: Any) -> Self:
-        """The same answer with other entries of its record."""
-        answer: Any = self
-        return dataclasses.replace(answer, record=dataclasses.replace(self.record, **changes))
+    @classmethod
+    def _entries_of(cls, content: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The entries of an answer among the content of its file."""
+        return content

@@ -7,6 +7,8 @@ from types import ModuleType
 
 MOVED = {"figures": "pictures"}
 """Names of `qa`."""
+MOVED_IN_OCP = {"Motion": "Figures"}
+"""Names of `qa.ocp`."""
 
 ROOMS = {
     "models.checks": "models.number_checks",

@@ -13,6 +13,11 @@ def test_a_name_that_has_moved_says_where_it_is():
         qa.figures.draw_fronts([])
 
 
+def test_a_class_that_has_another_name_says_it():
+    with pytest.raises(AttributeError, match=r"ocp\.Motion has moved to .*ocp\.Figures"):
+        _ = qa.ocp.Motion
+
+
 @pytest.mark.parametrize(
     ("room", "now"),
     [

@@ -11,16 +11,18 @@ TREES = {
     for package in PACKAGES
     for path in sorted((ROOT / package).rglob("*.py"))
 }
-NAMED_TWICE = {"Answer", "Figures", "Group", "Measured", "Part", "Tables", "_Attempt"}
-"""Classes whose second name is still to come; the test says when one of them has it."""
 ROOMS_NAMED_TWICE = {"page"}
 FOR_TYPES_ALONE = {
     ("models.plant", "models.validation"),
     ("metaheuristics.jobs", "metaheuristics.run_files"),
     ("studies.sweep.between", "studies.sweep.library"),
     ("studies.cli.given", "studies.cli.robot_options"),
+    ("studies.cli.given", "studies.cli.read_task"),
+    ("studies.cli.read_task", "studies.cli.robot_options"),
+    ("ocp.solvers.funnel", "ocp.solvers.sqp"),
+    ("ocp.candidate", "ocp.figures"),
 }
-"""A file that is checked or read by the other one, which knows its type."""
+"""A file that is checked, read or measured by the other one, which knows its type."""
 
 
 def named_twice(named):
@@ -47,7 +49,7 @@ def test_no_two_classes_have_one_name():
         if isinstance(node, ast.ClassDef)
     ]
     assert len(named) > 200
-    assert named_twice(named).keys() == NAMED_TWICE
+    assert not named_twice(named)
 
 
 def module_of(path):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from quietarm.models import JointMotion, Plant
 from quietarm.models.plant import DAMPING, FREQUENCY
 from quietarm.ocp.checks import IF_STATED
-from quietarm.ocp.saved import Saved
+from quietarm.ocp.saved import Answer
 from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
@@ -128,7 +128,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Identified(Saved):
+class Identified(Answer):
     """A plant that is identified from recordings.
 
     Attributes
@@ -154,6 +154,7 @@ class Identified(Saved):
 
     kind: ClassVar[str] = "machine"
     version: ClassVar[int] = 2
+    sealed: ClassVar[bool] = False
 
     plant: Plant
     estimates: tuple[Estimate, ...]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -300,6 +300,10 @@ class Front(Answer):
             infeasible=motions.infeasible,
             objectives=names,
         )
+
+    def restated(self, **changes: Any) -> Front:
+        """The same front with other entries of its record."""
+        return replace(self, record=replace(self.record, **changes))
 
     def smallest_residual(self) -> FrontPoint:
         """The point of smallest residual; ValueError when the front is empty."""

@@ -125,7 +125,7 @@ def plan_moves(
     hopeless = _refuse_the_unsolved(problems, solutions)
     for attempting, starts_of_all in attempts:
         _solve_the_unsolved(problems, solutions, starts_of_all, attempting, hopeless)
-    moves = _Table(problems, solutions)
+    moves = _MovesTable(problems, solutions)
     moves.certify(solver, guesses)
     return moves.to_moves()
 
@@ -205,7 +205,7 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
     return first_steps(longest, profile)
 
 
-class _Table:
+class _MovesTable:
     """The columns of `Moves`, empty until a solution is certified."""
 
     def __init__(self, problems: Sequence[Program], solutions: Sequence[Solution]) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,14 +109,6 @@ def _least_residual(request: Request, starts: list[Array]) -> float | None:
     return stillest.residual if stillest.status.solved else None
 
 
-class _PlanAndPeaks(NamedTuple):
-    """A plan; all motions that were solved, cheapest first; peaks between the scenarios."""
-
-    plan: Plan
-    solved: list[Array]
-    peaks: list[Worst]
-
-
 def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
@@ -126,15 +117,14 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
     divided by the remaining excess; where that does not settle it, they become scenarios as well.
     """
     limit = request.residual_limit
-    attempt = _solve_and_look_between(request, starts)
-    plan = attempt.plan
+    plan, solved = plan_from_starts(request, starts)
+    between = list(plan.peaks)
     tightened = limit
     rounds = 0
     tightenings = 0
-    while attempt.peaks:
-        plan = attempt.plan
-        excess = attempt.peaks[0].residual / limit - 1
-        above = [peak for peak in attempt.peaks if peak.residual > limit]
+    while between:
+        excess = between[0].residual / limit - 1
+        above = [peak for peak in between if peak.residual > limit]
         scenarios = _new_scenarios(request.task, above)
         can_add = bool(scenarios) and rounds < _ROUNDS
         can_tighten = excess > 0 and tightenings < _TIGHTENINGS
@@ -148,7 +138,7 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
             known = request.task.scenarios[1:]
             request = request.on(request.task.with_samples([*known, *scenarios]))
             following = request
-            starts += attempt.solved[:most_starts]
+            starts += solved[:most_starts]
         elif can_tighten:
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
@@ -156,19 +146,14 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
         else:
             break
         try:
-            attempt = _solve_and_look_between(following, starts)
-            plan = attempt.plan
+            another, solved_now = plan_from_starts(following, starts)
+            between = list(another.peaks)
+            plan, solved = another, solved_now
         except SolverFailedError:
             if not tightenings:
                 raise
             tightenings = _TIGHTENINGS  # a tighter limit leads nowhere: more scenarios may
     return plan.with_entries(residual_limit=limit)
-
-
-def _solve_and_look_between(request: Request, starts: list[Array]) -> _PlanAndPeaks:
-    """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
-    plan, solved = plan_from_starts(request, starts)
-    return _PlanAndPeaks(plan, solved, list(plan.peaks))
 
 
 def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:

@@ -127,7 +127,7 @@ class Program:
         """Their derivatives, in any scenario."""
         return batch_of(self.evaluator.simulation)
 
-    @property
+    @_OfSteps
     def errors(self) -> Array:
         """The plant's errors, shape (scenarios, ranges), the nominal one first."""
         return self.evaluator.scenarios
