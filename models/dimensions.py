@@ -94,7 +94,7 @@ class Unit:
             kinds = (self.on(kind, self.tip) for kind in (ROTARY, LINEAR))
             texts = dict.fromkeys(one.spelt(times, over, power, either) for one in kinds)
             return either.join(texts)
-        shown = _SHOWN[self.joint] | {_OF_TIP: ((self.tip, 1),)}
+        shown = {**_SHOWN[self.joint], _OF_TIP: ((self.tip, 1),)}
         symbols = _merged(
             (symbol, n * exponent)
             for name, exponent in self.powers

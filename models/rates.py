@@ -46,7 +46,8 @@ def _in_symbols(
     amplitudes = [moved(*pair) for pair in zip(W, dW)]
     rates = [moved(*pair) for pair in zip(dW, ddW)]
     slopes = [ca.jtimes(kind(value), later, 1.0) for value in values(ahead, amplitudes, rates)]
-    return ca.substitute(slopes, [later], [kind(0.0)])
+    now: Any = ca.substitute(slopes, [later], [kind(0.0)])
+    return now
 
 
 def _in_numbers(

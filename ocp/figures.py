@@ -26,6 +26,7 @@ from quietarm.ocp.limits import (
     Quantity,
     Ranged,
 )
+from quietarm.ocp.record import REST
 
 if TYPE_CHECKING:
     from quietarm.ocp.candidate import Candidate
@@ -154,7 +155,7 @@ _FIRST = (
         Words("residual"),
         lambda candidate: candidate.residual,
         symbol="F1",
-        agreement=1e-6,
+        agreement=REST,
     ),
     Figure(ENERGY, JOULE, Words("energy"), lambda candidate: candidate.energy, symbol="F2"),
     Figure(

@@ -16,8 +16,8 @@ from quietarm.models.compiled import Compiled
 from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import Limit, Quantity
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Tradeoff
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
     best_of_starts,

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import not_negative, quoted, takes
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Place, Progress, Tradeoff, no_report
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.request import Request

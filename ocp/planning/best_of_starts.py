@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit, Ranged
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.certify import OF_A_PLAN, by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
 from quietarm.ocp.solvers.least_excess import least_excess

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
 from quietarm.ocp.simulation.mesh import default_steps

@@ -11,8 +11,9 @@ from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
 from quietarm.ocp.checks import spelling, unknown
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
-from quietarm.ocp.objectives import ENERGY, known_objectives
+from quietarm.ocp.objectives import known_objectives
 from quietarm.views.report.method_rows import GRADIENT_LABELS, label_of
 from quietarm.views.report.words import error_words, objective_words, window_words
 

@@ -58,8 +58,8 @@ def test_fronts_and_searches_have_them(own, done):
     done(f"front {MOVE} {LIMIT} --terms 6 --points 2 --output front.csv")
     assert "rms_torque_Nm" in heading("front.csv")
     out = done(
-        f"search {MOVE} {LIMIT} --terms 2 --bound 1 --population 20 --generations 3 "
-        "--objectives residual,energy,peak-tip-acceleration --output found.csv"
+        f"search {MOVE} --tip-acceleration-limit 9 --terms 2 --bound 0.2 --population 20 "
+        "--generations 3 --objectives residual,energy,peak-tip-acceleration --output found.csv"
     )
     assert "peak_tip_acceleration_m_per_s2" in heading("found.csv")
     assert "tip acceleration" in out
