@@ -64,7 +64,7 @@ class Given:
 
     def refuse(self, names: Collection[str], why: str) -> None:
         """Refuse options that were typed where they have no meaning."""
-        for param in self._context.command.params:
+        for param in self._context.command.get_params(self._context):
             if param.name in names and self.typed(param.name):
                 name = param.opts[0] if isinstance(param, click.Option) else param.name.upper()
                 raise ValueError(f"{name} {why}; leave it out")
