@@ -1,16 +1,18 @@
 """How good the points of a front are, computed from them when it is asked for.
 
-An indicator is one entry of `INDICATORS`: searches, benches and comparisons use, tabulate and test
-every entry. Formulas: docs/measures.md.
+An indicator is one class: searches, benches and comparisons use, tabulate and test every one that
+is known. Formulas: docs/measures.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from math import ceil, nan
-from types import MappingProxyType
+from typing import Any, ClassVar
 
 import moocore
 import numpy as np
@@ -19,7 +21,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.population import figures_of_motions
 from quietarm.metaheuristics.thinning import MOST_POINTS, thinned
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import failed_in, known, quoted, ships, takes
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
@@ -55,7 +57,9 @@ class Scale:
 
     def scores(self, points: Array) -> dict[str, float]:
         """Every indicator of points, shape (n, objectives), by its name."""
-        return {name: self.score(points, indicator) for name, indicator in INDICATORS.items()}
+        return {
+            name: self.score(points, indicator) for name, indicator in known_indicators().items()
+        }
 
     def score(self, points: Array, indicator: Indicator) -> float:
         """An indicator of points, shape (n, objectives), in SI units.
@@ -65,7 +69,7 @@ class Scale:
         """
         if not len(points):
             return indicator.of_nothing
-        return indicator.of(moocore.filter_dominated(self.scaled(points)), self)
+        return indicator(moocore.filter_dominated(self.scaled(points)), self)
 
 
 class Reference(Scale):
@@ -94,92 +98,136 @@ class Reference(Scale):
         object.__setattr__(self, "front", front)
 
 
-def hypervolume(scaled: Array, scale: Scale) -> float:
-    """What points dominate up to the corner, as a share of what is the whole there."""
-    return float(moocore.hypervolume(scaled, ref=[CORNER] * scaled.shape[1])) / scale.whole
+class Indicator(ABC):
+    """One number for the points of a front. A new one is a class with a name and a value.
 
+    A class beside a plant in its `--plant-file`, or anywhere in Python, has a column in every
+    table, report, test and csv of benches and comparisons once it is defined.
 
-def igd_plus(scaled: Array, scale: Scale) -> float:
-    """Mean distance by which the stations are missed."""
-    return float(moocore.igd_plus(scaled, ref=scale.stations))
-
-
-def epsilon_indicator(scaled: Array, scale: Scale) -> float:
-    """Least shift by which the points weakly dominate the stations."""
-    return float(moocore.epsilon_additive(scaled, ref=scale.stations))
-
-
-@dataclass(frozen=True)
-class Indicator:
-    """One number for a set of points.
-
-    Attributes
-    ----------
-    name : str
-        In columns of tables.
-    label : str
-        In headings.
-    unit : str
-        In which headings state it; empty for a plain number, "%" for a share of 1.
-    more_is_better : bool
-        Its direction: of a share that is to be 1, or of a distance that is to be 0.
-    meaning : str
-        In a sentence of a report, after the label.
-    of : callable
-        From the points that no other dominates, scaled, shape (n, objectives), and their `Scale`.
-    form : str
-        Format of its digits in tables of comparisons.
+    Raises
+    ------
+    ValueError
+        When a subclass has no name that can head a column.
     """
 
-    name: str
-    label: str
-    unit: str
-    more_is_better: bool
-    meaning: str
-    of: Callable[[Array, Scale], float]
-    form: str = ".2g"
+    name: ClassVar[str]
+    """In columns of tables."""
+    label: ClassVar[str]
+    """In headings; by default the name."""
+    unit: ClassVar[str] = ""
+    """In which headings state it; empty for a plain number, "%" for a share of 1."""
+    more_is_better: ClassVar[bool] = False
+    """Its direction: of a share that is to be 1, or of a distance that is to be 0."""
+    meaning: ClassVar[str]
+    """In a sentence of a report, after the label; by default the first line of its docstring."""
+    form: ClassVar[str] = ".2g"
+    """Format of its digits in tables of comparisons."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        name = vars(cls).get("name")
+        if name is None:
+            return
+        if not isinstance(name, str) or not name.isidentifier():
+            raise ValueError(
+                f"name of the indicator {cls.__name__} is {quoted(name)}; give letters, digits "
+                "and _, which head a column"
+            )
+        if "label" not in vars(cls):
+            cls.label = name.replace("_", " ")
+        if "meaning" not in vars(cls):
+            first = (cls.__doc__ or cls.label).partition("\n")[0].rstrip(".")
+            cls.meaning = first[:1].lower() + first[1:]
+
+    @abstractmethod
+    def value(self, points: Array, scale: Scale) -> float:
+        """Its value.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, objectives)
+            Those that no other dominates, in the scale: from 0 at the ideal to 1 at the nadir.
+        scale : Scale
+            What they are measured against; its `stations` are the points to come near to.
+        """
 
     @property
     def of_nothing(self) -> float:
         """Its value where there is no point."""
         return 0.0 if self.more_is_better else nan
 
+    def __call__(self, points: Array, scale: Scale) -> float:
+        """Its value as a number; ValueError where it fails, or gives none."""
+        try:
+            return float(self.value(points, scale))
+        except Exception as error:
+            if ships(type(self)):
+                raise
+            raise failed_in(f"indicator {self.name}", type(self), error) from error
 
-HYPERVOLUME = Indicator(
-    "hypervolume",
-    "hypervolume",
-    "%",
-    True,
-    "area that a front dominates, as a share, up to a tenth of the reference front's extent beyond "
-    "its ends",
-    hypervolume,
-    ".4f",
-)
-INDICATORS: Mapping[str, Indicator] = MappingProxyType(
-    {
-        indicator.name: indicator
-        for indicator in (
-            HYPERVOLUME,
-            Indicator(
-                "igd_plus",
-                "IGD+",
-                "",
-                False,
-                "mean distance by which the reference front is missed, in units of its extent",
-                igd_plus,
-            ),
-            Indicator(
-                "epsilon",
-                "additive epsilon",
-                "",
-                False,
-                "worst miss of the reference front, in units of its extent",
-                epsilon_indicator,
-            ),
+
+class Hypervolume(Indicator):
+    """What points dominate up to the corner, as a share of what is the whole there."""
+
+    name = "hypervolume"
+    unit = "%"
+    more_is_better = True
+    meaning = (
+        "area that a front dominates, as a share, up to a tenth of the reference front's extent "
+        "beyond its ends"
+    )
+    form = ".4f"
+
+    def value(self, points: Array, scale: Scale) -> float:
+        """The share."""
+        return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1])) / scale.whole
+
+
+class InvertedDistance(Indicator):
+    """Mean distance by which the stations are missed."""
+
+    name = "igd_plus"
+    label = "IGD+"
+    meaning = "mean distance by which the reference front is missed, in units of its extent"
+
+    def value(self, points: Array, scale: Scale) -> float:
+        """The mean."""
+        return float(moocore.igd_plus(points, ref=scale.stations))
+
+
+class AdditiveEpsilon(Indicator):
+    """Least shift by which the points weakly dominate the stations."""
+
+    name = "epsilon"
+    label = "additive epsilon"
+    meaning = "worst miss of the reference front, in units of its extent"
+
+    def value(self, points: Array, scale: Scale) -> float:
+        """The shift."""
+        return float(moocore.epsilon_additive(points, ref=scale.stations))
+
+
+def known_indicators() -> Mapping[str, Indicator]:
+    """The indicators by name, quietarm's first, then those of files that were loaded."""
+    return {name: _indicator_of(kind) for name, kind in known(Indicator).items()}
+
+
+def __getattr__(name: str) -> Any:
+    """Say what has taken the place of a name of 2.0."""
+    if name == "INDICATORS":
+        raise AttributeError(
+            "INDICATORS is gone; give known_indicators(), and a new one as a class of Indicator"
         )
-    }
-)
-"""By name; every table, report and test has a column for each."""
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+@cache
+def _indicator_of(kind: type[Indicator]) -> Indicator:
+    """The one object of a class."""
+    return kind()
+
+
+HYPERVOLUME = _indicator_of(Hypervolume)
 
 
 def objectives(front: Front) -> Array:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from quietarm.metaheuristics.score import BETWEEN, INDICATORS
+from quietarm.metaheuristics.score import BETWEEN, known_indicators
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.ocp.objectives import objectives_on
@@ -99,7 +99,7 @@ def _row(comparison: Comparison, group: Group) -> dict[str, object]:
         indicator.label: None
         if hidden
         else spread_words(group.spread("scores", name), indicator.form)
-        for name, indicator in INDICATORS.items()
+        for name, indicator in known_indicators().items()
     }
     front = group.runs[0].front
     return {
@@ -140,7 +140,9 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 "points": len(front.points),
                 "residual_window_s": front.task.residual_window,
             }
-            for name in INDICATORS:
+            for name in known_indicators():
+                if name in row:
+                    raise ValueError(f"{name} is a column already; give the indicator another name")
                 row |= {name: run.scores[name], f"{name}_found": run.scores_found[name]}
             for i, level in enumerate(comparison.levels):
                 at = f"at_{scale * level:g}{shown}"
@@ -182,7 +184,7 @@ def fronts_report(
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
             "unsealed": unsealed,
-            "indicators": INDICATORS,
+            "indicators": known_indicators(),
             "several": any(
                 len(group.runs) > 1 for comparison in comparisons for group in comparison.groups
             ),

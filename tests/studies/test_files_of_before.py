@@ -20,8 +20,8 @@ from quietarm.metaheuristics.jobs import Job, finished_jobs
 from quietarm.metaheuristics.run_files import is_sealed
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
-    INDICATORS,
     filled,
+    known_indicators,
     objectives,
     scores_on_the_way,
     shares_of_box,
@@ -203,7 +203,7 @@ def test_runs_load_by_their_checksums_and_their_figures_are_computed(old, of_the
                 assert scores[name] == pytest.approx(getattr(stated, name), rel=1e-4, abs=1e-8)
         for name in STATED:  # on the way as they state it
             stated = [getattr(mark.quality, name) for mark in front.history[:-1]]
-            on_the_way = scores_on_the_way(front, scale, INDICATORS[name])
+            on_the_way = scores_on_the_way(front, scale, known_indicators()[name])
             assert on_the_way[:-1].tolist() == stated
     table = Results.of_jobs(fronts).table
     assert len(table) == len(jobs)

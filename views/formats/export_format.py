@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import traceback
 from abc import ABC
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from math import inf
@@ -13,7 +12,7 @@ from pkgutil import iter_modules
 from typing import Any, ClassVar, NamedTuple
 
 from quietarm.ocp import Front, Plan, QuietarmError
-from quietarm.ocp.checks import finite, known, listed, quoted, unknown, whole, words_of_error
+from quietarm.ocp.checks import failed_in, finite, known, listed, quoted, ships, unknown, whole
 
 PLAN = "plan"
 FRONT = "front"
@@ -208,12 +207,9 @@ class ExportFormat(ABC):
         except (ValueError, QuietarmError, OSError):
             raise
         except Exception as error:
-            if _is_shipped(type(self)):
+            if ships(type(self)):
                 raise
-            place = _last_line_of_users(error)
-            raise ValueError(
-                f"format {self.name}{place}: {words_of_error(error)}; mend it"
-            ) from error
+            raise failed_in(f"format {self.name}", type(self), error) from error
 
     def refuse_number(self, number: int) -> None:
         """Refuse several answers where it takes one."""
@@ -323,26 +319,3 @@ def _check_definition(kind: type[ExportFormat]) -> None:
 def _is_ending(text: object) -> bool:
     """Whether a text is the end of a file's name, with its point and in small letters."""
     return isinstance(text, str) and Path(f"a{text}").suffix == text == text.lower() != ""
-
-
-def _is_shipped(kind: type) -> bool:
-    return kind.__module__.startswith("quietarm.")
-
-
-def _last_line_of_users(error: BaseException) -> str:
-    """Where a format of the user's own has failed."""
-    here = Path(__file__).parents[2]
-    frames = traceback.extract_tb(error.__traceback__)
-    for frame in reversed(list(_not_in(here, frames))):
-        return f" ({frame.filename}, line {frame.lineno})"
-    return ""
-
-
-def _not_in(
-    folder: Path, frames: Iterable[traceback.FrameSummary]
-) -> Iterable[traceback.FrameSummary]:
-    """Frames of files that are in none of our folders, nor in a library's."""
-    for frame in frames:
-        path = Path(frame.filename)
-        if not path.is_relative_to(folder) and "site-packages" not in path.parts:
-            yield frame
