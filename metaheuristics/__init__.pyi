@@ -2,6 +2,7 @@ from .algorithms.nsga2 import PaperNSGA2 as PaperNSGA2
 from .algorithms.presets import PAPER_BOX as PAPER_BOX
 from .algorithms.presets import PRESETS as PRESETS
 from .algorithms.presets import Preset as Preset
+from .algorithms.search_method import SearchMethod as SearchMethod
 from .algorithms.velocity import CONSTRICTION as CONSTRICTION
 from .algorithms.velocity import INERTIA_2002 as INERTIA_2002
 from .algorithms.velocity import PAPER_GROUP as PAPER_GROUP
@@ -20,5 +21,6 @@ from .problems.recorded import RecordedFunction as RecordedFunction
 from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .run_search import SearchProgress as SearchProgress
 from .run_search import search as search
+from .score import Indicator as Indicator
 from .score import Reference as Reference
 from .spread import Spread as Spread

@@ -147,6 +147,7 @@ def _disorder(front: Front, job: Job) -> str:
             f"states {record.evaluations} candidates in {record.seconds:.3g} s, and its history "
             f"ends with {last.evaluations} in {last.seconds:.3g} s"
         )
-    if isinstance(job.method, str) and job.method in PRESETS and last.evaluations != job.budget:
+    preset = PRESETS.get(job.method) if isinstance(job.method, str) else None
+    if preset is not None and preset.own is None and last.evaluations != job.budget:
         return f"states {last.evaluations} candidates, and its job has a budget of {job.budget}"
     return ""

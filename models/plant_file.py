@@ -6,7 +6,7 @@ import copyreg
 import hashlib
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from inspect import isabstract
@@ -75,6 +75,35 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
 def file_of_plant(plant: type[Plant]) -> PlantFile | None:
     """The file that a class of plants was loaded from by `load_plant_file`, if it was."""
     return _file_of.get(plant)
+
+
+class WithPlantFiles:
+    """A function that goes to another process together with the user's files that are loaded here.
+
+    What they define beside plants, such as a search, is known there by its name as well.
+    """
+
+    def __init__(self, function: Callable[..., object], files: Iterable[PlantFile] = ()) -> None:
+        self._function = function
+        self._files = tuple(files) or tuple(
+            {file.digest: file for file in _file_of.values()}.values()
+        )
+
+    def __call__(self, *arguments: object) -> object:
+        """What the function gives."""
+        return self._function(*arguments)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _function_with_files, (self._function, self._files)
+
+
+def _function_with_files(
+    function: Callable[..., object], files: Iterable[PlantFile]
+) -> Callable[..., object]:
+    """The function, once the files are loaded here."""
+    for file in files:
+        _plants_of(file)
+    return function
 
 
 def _plants_of(file: PlantFile) -> Mapping[str, type[Plant]]:

@@ -6,13 +6,15 @@ and a list of names does not need it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from numbers import Integral
 from typing import TYPE_CHECKING
 
+from quietarm.metaheuristics.algorithms.search_method import SearchMethod
 from quietarm.metaheuristics.algorithms.settings import MethodSetting, Value, with_defaults
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import known, unknown
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -55,6 +57,8 @@ class Preset:
         Whether it takes steps of the model's gradient, which no noise reaches.
     most : int
         Most individuals. pymoo's methods compare all pairs: these fill up to 2 GB of memory.
+    own : type, optional
+        The user's own class, in place of the `kind`.
     """
 
     name: str
@@ -72,10 +76,32 @@ class Preset:
     residual_and_energy: bool = False
     takes_gradients: bool = False
     most: int = 10_000
+    own: type[SearchMethod] | None = None
+
+    @classmethod
+    def of_own(cls, own: type[SearchMethod]) -> Preset:
+        """The entry of a user's own class."""
+        is_function = own.run is not SearchMethod.run
+        return cls(
+            own.name,
+            own.label,
+            "one's own",
+            "",
+            own.defaults(),
+            population=1 if is_function else own.population,
+            generations=own.budget if is_function else own.generations,
+            is_function=is_function,
+            own=own,
+        )
 
     @property
     def settings(self) -> tuple[MethodSetting, ...]:
         """Its settings beside population and generations."""
+        if self.own is not None:
+            return tuple(
+                MethodSetting(name, name, value, "of one's own", self.own.check)
+                for name, value in self.defaults.items()
+            )
         return tuple(MethodSetting.of(argument, value) for argument, value in self.defaults.items())
 
     def build(
@@ -106,6 +132,9 @@ class Preset:
             When a setting or the population is not known or out of range, or a library is missing.
         """
         values = self.checked(population, settings)
+        if self.own is not None:
+            own = self.own(**values)
+            return own if self.is_function else own.make(population)
         from quietarm.metaheuristics.algorithms.building import built
 
         return built(self, population, values, objectives)
@@ -445,7 +474,41 @@ _ALL = (
     ),
 )
 
-PRESETS: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}
+
+class Presets(Mapping[str, Preset]):
+    """Every method by its name: quietarm's, and then those of the user's own classes.
+
+    ValueError where one of these has the name of quietarm's.
+    """
+
+    _shipped: Mapping[str, Preset] = {preset.name: preset for preset in _ALL}
+
+    def _all(self) -> Mapping[str, Preset]:
+        own = known(SearchMethod)
+        for name, kind in own.items():
+            if name in self._shipped:
+                raise ValueError(
+                    f"name {name!r} of the search {kind.__name__} is quietarm's own; give another"
+                )
+        return {**self._shipped, **{name: _of_own(kind) for name, kind in own.items()}}
+
+    def __getitem__(self, name: str) -> Preset:
+        return self._shipped[name] if name in self._shipped else self._all()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+
+@cache
+def _of_own(kind: type[SearchMethod]) -> Preset:
+    """The one entry of a class."""
+    return Preset.of_own(kind)
+
+
+PRESETS: Mapping[str, Preset] = Presets()
 """By name. Section 3.1 has 100 particles in a swarm, 200 iterations. Section 3.2 has population
 200, 500 generations, crossover 0.8, mutation 0.01 (`nsga2.py`). All other settings are pymoo's
 defaults."""

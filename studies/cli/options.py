@@ -221,7 +221,10 @@ def profile_options(*more: str, words: str = "") -> tuple[click.Option, click.Op
 
 
 def method_option(
-    methods: Iterable[str], elsewhere: Mapping[str, str], default: str, words: str
+    methods: Iterable[str] | Callable[[], Iterable[str]],
+    elsewhere: Mapping[str, str],
+    default: str,
+    words: str,
 ) -> click.Option:
     """--method; an error says of methods `elsewhere` which command has them."""
     return option("--method", type=Named("method", methods, elsewhere), default=default, help=words)

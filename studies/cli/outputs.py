@@ -38,7 +38,7 @@ class Written(NamedTuple):
     """The files that were written, and what is said of them."""
 
     paths: Sequence[Path]
-    notes: Sequence[str]
+    notes: Sequence[str] = ()
 
 
 _NAMES = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
@@ -198,9 +198,10 @@ def finish(
             except Exception as error:  # of any kind: the next file may be saved all the same
                 failures.append(error)
             else:
-                names = made.paths if isinstance(made, Written) else [path]
-                notes += made.notes if isinstance(made, Written) else []
-                written += [] if path == STDOUT else [str(name) for name in names]
+                if not isinstance(made, Written):
+                    made = Written([] if path == STDOUT else [path])
+                notes += [f"{path}: {note}" for note in made.notes]
+                written += map(str, made.paths)
     if came and trouble is None:
         words = f"interrupted; wrote {', '.join(written) or 'nothing'}"
         trouble = InterruptedCommandError(words, came[0])

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from quietarm.models import load_plant_file
-from quietarm.models.units import parse_quantity
+from quietarm.models.units import UNITS, parse_quantity
 from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.answers.read_answers import load_fronts_and_plans, load_plans
 from quietarm.studies.cli.given import Given
@@ -61,7 +61,14 @@ class ExportCommand(Command):
         """Its own options, those of the formats, and those of all commands."""
         params = super().get_params(ctx)
         own = len(self.params)
-        return [*params[:own], *_setting_options(), *params[own:]]
+        return [*params[:own], _format_option(), *_setting_options(), *params[own:]]
+
+
+def _format_option() -> click.Option:
+    """--format, of standard output."""
+    possible = _to_stdout()
+    words = f"Of standard output: {' or '.join(possible)}. [default: {possible[0]}]"
+    return option("--format", "form", type=Named("format", known_formats), help=words)
 
 
 def _value_after(name: str, words: Sequence[str]) -> str | None:
@@ -115,8 +122,6 @@ def _metavar(settings: Sequence[tuple[str, Setting]]) -> str:
     option("--output", "-o", type=Parsed("file", _output), required=True,
            help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
            "output."),
-    option("--format", "form", type=Named("format", known_formats),
-           help=f"Of standard output: {' or '.join(_to_stdout())}. [default: {_to_stdout()[0]}]"),
 ])  # fmt: skip
 def export(given: Given) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB), as a film (gif, mp4) or a page.
@@ -212,6 +217,8 @@ def _read(setting: Setting, text: str) -> Any:
     if setting.type_of_value is str:
         return text
     if setting.type_of_value is float:
+        if setting.unit not in UNITS:
+            text = text.strip().removesuffix(setting.unit)
         return parse_quantity(text, setting.unit or "-", f"a value of {setting.option}")
     try:
         return int(text)

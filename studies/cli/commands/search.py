@@ -61,7 +61,7 @@ _BY_GRADIENT = {
 
 @command(
     *TASK, *ROBOT_PATH,
-    method_option(PRESETS, _BY_GRADIENT, "nsga2",
+    method_option(lambda: [*PRESETS], _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,
     option("--population", type=int, help="Individuals, or particles in a swarm."),
