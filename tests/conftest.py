@@ -15,10 +15,11 @@ os.environ.setdefault("NUMBA_OPT", "0")
 
 from pages import blocks
 
-from quietarm.metaheuristics.score import Indicator
+from quietarm.metaheuristics import Indicator, SearchMethod
 from quietarm.models import DualLinkManipulator, Plant, compiled, known_plants, plant_file
 from quietarm.ocp import Energy, JointProfile
-from quietarm.views.formats.export_format import ExportFormat
+from quietarm.views import ExportFormat
+from quietarm.views.pictures.panel import Panel
 
 # The tests of a session share the functions that they compile: a tenth of their time.
 compiled.RECENT = 48
@@ -86,7 +87,9 @@ def what_is_made_up_is_forgotten(monkeypatch, _plants_of_this_test_are_forgotten
 
 def classes_with_a_name(family=object):
     """Classes of quietarm's families, shipped or not, that are known by a name."""
-    families = (Energy, ExportFormat, Indicator, JointProfile) if family is object else [family]
+    families = [family]
+    if family is object:
+        families = [Energy, ExportFormat, Indicator, JointProfile, Panel, SearchMethod]
     for kind in families:
         if isinstance(vars(kind).get("name"), str):
             yield kind
