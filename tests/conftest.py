@@ -78,7 +78,7 @@ def _plants_of_this_test_are_forgotten(monkeypatch):
 def what_is_made_up_is_forgotten(monkeypatch, _plants_of_this_test_are_forgotten):
     """What a test defines is known by name during that test only."""
     before = set(classes_with_a_name())
-    monkeypatch.setattr(plant_file, "_file_of", dict(plant_file._file_of))
+    monkeypatch.setattr(plant_file, "_module_of", dict(plant_file._module_of))
     yield
     for kind in classes_with_a_name():
         if kind not in before:

@@ -43,9 +43,10 @@ def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> c
 
 
 COMMON = (
-    # eager: the plants in it are then known by name
+    # eager: what is in it is then known by name
     option("--plant-file", type=Parsed("file", load_plant_file), is_eager=True,
-           help="Plants of your own: a file in Python, which is run."),
+           help="Your own plants, profiles, energies, searches, indicators, formats or panels: a "
+           "file in Python, which is run."),
     option("--quiet", is_flag=True, help="Show no progress."),
 )  # fmt: skip
 

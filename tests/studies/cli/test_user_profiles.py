@@ -10,8 +10,10 @@ from pages import blocks
 
 from quietarm.ocp import Front, Plan
 
+pytestmark = pytest.mark.usefixtures("what_is_made_up_is_forgotten")
+
 ROOT = Path(__file__).parents[3]
-PACKAGES = "quietarm", "models", "ocp", "metaheuristics", "studies"
+PACKAGES = "quietarm", "models", "ocp", "metaheuristics", "machine", "views", "studies"
 (PROFILE,) = blocks("extend", "python")
 MOVE = "--target 60deg --duration 3 --profile minimum-jerk --quiet"
 LEAST_JERK_SPEED = 15 / 8
