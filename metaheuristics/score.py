@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.objective.population import figures_of_motions
 from quietarm.metaheuristics.thinning import MOST_POINTS, thinned
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.checks import failed_in, known, quoted, ships, takes
+from quietarm.ocp.checks import failed_in, forgotten_if_refused, known, quoted, ships, takes
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
@@ -99,40 +99,41 @@ class Reference(Scale):
 
 
 class Indicator(ABC):
-    """One number for the points of a front. A new one is a class with a name and a value.
+    """One number for the points of a front. A new one is a class with a `name` and a `value`.
 
-    A class beside a plant in its `--plant-file`, or anywhere in Python, has a column in every
-    table, report, test and csv of benches and comparisons once it is defined.
+    Every table, report, test and csv of benches and comparisons has a column for it as soon as it
+    is defined, in a `--plant-file` or anywhere in Python.
 
     Raises
     ------
     ValueError
-        When a subclass has no name that can head a column.
+        If the name of a subclass cannot head a column.
     """
 
     name: ClassVar[str]
-    """In columns of tables."""
+    """The column in tables."""
     label: ClassVar[str]
-    """In headings; by default the name."""
+    """The heading; by default the name."""
     unit: ClassVar[str] = ""
-    """In which headings state it; empty for a plain number, "%" for a share of 1."""
+    """The unit in headings: empty for a plain number, "%" for a share of 1."""
     more_is_better: ClassVar[bool] = False
-    """Its direction: of a share that is to be 1, or of a distance that is to be 0."""
+    """True for a share that should be 1, False for a distance that should be 0."""
     meaning: ClassVar[str]
-    """In a sentence of a report, after the label; by default the first line of its docstring."""
+    """An explanation for reports; by default the first line of the docstring."""
     form: ClassVar[str] = ".2g"
-    """Format of its digits in tables of comparisons."""
+    """The format of its digits in tables of comparisons."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         name = vars(cls).get("name")
         if name is None:
             return
-        if not isinstance(name, str) or not name.isidentifier():
-            raise ValueError(
-                f"name of the indicator {cls.__name__} is {quoted(name)}; give letters, digits "
-                "and _, which head a column"
-            )
+        with forgotten_if_refused(cls):
+            if not isinstance(name, str) or not name.isidentifier():
+                raise ValueError(
+                    f"name of the indicator {cls.__name__} is {quoted(name)}; give letters, digits "
+                    "and _, which head a column"
+                )
         if "label" not in vars(cls):
             cls.label = name.replace("_", " ")
         if "meaning" not in vars(cls):
@@ -141,23 +142,23 @@ class Indicator(ABC):
 
     @abstractmethod
     def value(self, points: Array, scale: Scale) -> float:
-        """Its value.
+        """Return its value for the non-dominated points of a front.
 
         Parameters
         ----------
         points : ndarray, shape (n, objectives)
-            Those that no other dominates, in the scale: from 0 at the ideal to 1 at the nadir.
+            The points, scaled from 0 at the ideal to 1 at the nadir.
         scale : Scale
-            What they are measured against; its `stations` are the points to come near to.
+            The scale; its `stations` are the points of the reference front.
         """
 
     @property
     def of_nothing(self) -> float:
-        """Its value where there is no point."""
+        """Return its value for a front without points."""
         return 0.0 if self.more_is_better else nan
 
     def __call__(self, points: Array, scale: Scale) -> float:
-        """Its value as a number; ValueError where it fails, or gives none."""
+        """Return its value as a number; ValueError if its code fails."""
         try:
             return float(self.value(points, scale))
         except Exception as error:
@@ -208,12 +209,12 @@ class AdditiveEpsilon(Indicator):
 
 
 def known_indicators() -> Mapping[str, Indicator]:
-    """The indicators by name, quietarm's first, then those of files that were loaded."""
+    """Return all indicators by name: those of quietarm, then the user's own."""
     return {name: _indicator_of(kind) for name, kind in known(Indicator).items()}
 
 
 def __getattr__(name: str) -> Any:
-    """Say what has taken the place of a name of 2.0."""
+    """Name the successor of a name of 2.0."""
     if name == "INDICATORS":
         raise AttributeError(
             "INDICATORS is gone; give known_indicators(), and a new one as a class of Indicator"
@@ -223,7 +224,7 @@ def __getattr__(name: str) -> Any:
 
 @cache
 def _indicator_of(kind: type[Indicator]) -> Indicator:
-    """The one object of a class."""
+    """Return the only object of a class."""
     return kind()
 
 

@@ -6,7 +6,8 @@ import inspect
 import reprlib
 import sys
 import traceback
-from collections.abc import Callable, Collection, Iterable, Mapping, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
+from contextlib import contextmanager
 from dataclasses import is_dataclass
 from functools import wraps
 from os import PathLike
@@ -48,6 +49,7 @@ __all__ = [
     "cut",
     "failed_in",
     "finite",
+    "forgotten_if_refused",
     "has_no",
     "hashable",
     "install",
@@ -244,6 +246,16 @@ def _descendants(family: type[T]) -> list[type[T]]:
 def ships(kind: type[Any]) -> bool:
     """Whether a class comes with quietarm."""
     return kind.__module__.startswith("quietarm.")
+
+
+@contextmanager
+def forgotten_if_refused(kind: Any) -> Iterator[None]:
+    """Take the name from a class whose definition is refused: it may live on, and is not known."""
+    try:
+        yield
+    except ValueError:
+        kind.name = None
+        raise
 
 
 def failed_in(what: str, kind: type[Any], error: BaseException) -> ValueError:

@@ -1,4 +1,4 @@
-"""A search of one's own, which commands know by its name."""
+"""The base class of a user's own search, which commands know by its name."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from quietarm.metaheuristics.algorithms.settings import Value
-from quietarm.ocp.checks import failed_in, quoted
+from quietarm.ocp.checks import failed_in, forgotten_if_refused, quoted
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -20,69 +20,57 @@ _OF_GRADIENT = ("epsilon", "weighted", "multistart")
 
 
 class SearchMethod(ABC):
-    """A search: a name, and `run`, or `algorithm` where pymoo has it.
+    """A user's own search: a class with a `name`, and either `run` or `algorithm`.
 
-    A class beside a plant in its `--plant-file`, or anywhere in Python, is known by its name to
-    `quietarm.search` and to the commands search, bench and list. What it may be set to are the
-    fields of a dataclass, numbers or words with defaults: ``--setting step=0.1``.
+    `quietarm.search` and the commands search, bench and list know it by its name as soon as it is
+    defined, in a `--plant-file` or anywhere in Python. Its settings are the fields of a dataclass,
+    numbers or words with defaults: ``--setting step=0.1``.
 
     Raises
     ------
     ValueError
-        When a subclass has no name that can be typed, or does nothing.
+        If a subclass has no name that can be typed, or defines neither method.
     """
 
     name: ClassVar[str]
-    """What it is called where it is typed: small letters, digits and hyphens."""
+    """The name that is typed: small letters, digits and hyphens."""
     label: ClassVar[str]
-    """What it is called in tables; by default the name."""
+    """The name in tables; by default `name`."""
     budget: ClassVar[int] = 10_000
-    """Candidates of `run` where none are asked for."""
+    """Default number of candidates of `run`."""
     population: ClassVar[int] = 100
+    """Default population of `algorithm`."""
     generations: ClassVar[int] = 400
-    """Of an `algorithm`, where none are asked for."""
+    """Default number of generations of `algorithm`."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        name = vars(cls).get("name")
-        if name is None:
-            return
-        if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9-]*", name):
-            raise ValueError(
-                f"name of the search {cls.__name__} is {quoted(name)}; give small letters, digits "
-                "and hyphens"
-            )
-        if name in _OF_GRADIENT:
-            raise ValueError(f"search {name} has the name of a gradient method; give another")
-        if "label" not in vars(cls):
-            cls.label = name
-        if cls.run is SearchMethod.run and cls.algorithm is SearchMethod.algorithm:
-            raise ValueError(
-                f"search {name} does nothing; define run(self, function, seed, budget), or "
-                "algorithm(self, population)"
-            )
+        if "name" in vars(cls):
+            with forgotten_if_refused(cls):
+                _check_definition(cls)
 
     def run(self, function: RecordedFunction, seed: int, budget: int) -> None:
-        """Ask a function of a problem for candidates, as often as one likes.
+        """Ask the problem's function for candidates until the budget is spent.
 
         Parameters
         ----------
         function : RecordedFunction
-            Called with candidates within `lower` and `upper`, shape (candidates, variables), it
-            returns objectives and violations of limits, a row a candidate. It keeps the front.
+            Call it with candidates between its `lower` and `upper`, shape (candidates, variables).
+            It returns objectives and violations of limits, one row for each candidate. It keeps the
+            front, and ends the search after the last candidate of the budget.
         seed : int
-            Of the random numbers.
+            Seed of the random numbers.
         budget : int
-            Candidates in all; with the last of them the search ends.
+            Number of candidates.
         """
         raise NotImplementedError
 
     def algorithm(self, population: int) -> Algorithm:
-        """A new algorithm of pymoo for so many individuals."""
+        """Return a new algorithm of pymoo for a population of this size."""
         raise NotImplementedError
 
     def __call__(self, function: RecordedFunction, seed: int, budget: int) -> None:
-        """Run it; ValueError in one line where its own lines fail, or ask for nothing."""
+        """Run it; ValueError in one line if its code fails, or asks for no candidate."""
         try:
             self.run(function, seed, budget)
         except Exception as error:
@@ -93,7 +81,7 @@ class SearchMethod(ABC):
             )
 
     def make(self, population: int) -> Algorithm:
-        """The algorithm; ValueError in one line where its own lines fail."""
+        """Return the algorithm; ValueError in one line if its code fails."""
         try:
             return self.algorithm(population)
         except Exception as error:
@@ -101,7 +89,7 @@ class SearchMethod(ABC):
 
     @classmethod
     def defaults(cls) -> Mapping[str, Value]:
-        """What it may be set to, with the defaults; ValueError of a field without one."""
+        """Return its settings with their defaults; ValueError if a field has none."""
         entries = dict[str, Any]()
         for field in fields(cls) if is_dataclass(cls) else ():
             if field.default is MISSING or not isinstance(field.default, float | int | str):
@@ -113,7 +101,7 @@ class SearchMethod(ABC):
 
     @classmethod
     def check(cls, name: str, value: object) -> Value:
-        """A value that is of the kind of the default."""
+        """Return a value of the type of the default; ValueError for another type."""
         default = cls.defaults()[name]
         kind = float if isinstance(default, float) else type(default)
         fits = isinstance(value, kind) and isinstance(value, bool) == isinstance(default, bool)
@@ -123,3 +111,22 @@ class SearchMethod(ABC):
             words = {float: "a number", int: "a whole number", bool: "true or false"}
             raise ValueError(f"{name} is {value!r}; give {words.get(kind, 'a word')}")
         return value
+
+
+def _check_definition(kind: type[SearchMethod]) -> None:
+    """Raise ValueError for a class that is not a complete search; label it otherwise."""
+    name: Any = kind.name
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9-]*", name):
+        raise ValueError(
+            f"name of the search {kind.__name__} is {quoted(name)}; give small letters, digits "
+            "and hyphens"
+        )
+    if name in _OF_GRADIENT:
+        raise ValueError(f"search {name} has the name of a gradient method; give another")
+    if "label" not in vars(kind):
+        kind.label = name
+    if kind.run is SearchMethod.run and kind.algorithm is SearchMethod.algorithm:
+        raise ValueError(
+            f"search {name} does nothing; define run(self, function, seed, budget), or "
+            "algorithm(self, population)"
+        )

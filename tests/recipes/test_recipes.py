@@ -309,10 +309,7 @@ class Names(qa.ExportFormat):
 
     def export(self, answers, path, report, **settings):
         labels = answers if isinstance(answers, dict) else ["answer"]
-        return Made({path: " ".join(labels), path.with_suffix(".count"): str(len(answers))})
-
-
-from quietarm.views.formats.export_format import Exported as Made
+        return {path: " ".join(labels), path.with_suffix(".count"): str(len(answers))}
 """
 
 

@@ -1,4 +1,4 @@
-"""What a format of files is: its name and endings, what it may be told, and what it writes."""
+"""The base class of export formats, their settings, and the lookup by name and by ending."""
 
 from __future__ import annotations
 
@@ -12,51 +12,66 @@ from pkgutil import iter_modules
 from typing import Any, ClassVar, NamedTuple
 
 from quietarm.ocp import Front, Plan, QuietarmError
-from quietarm.ocp.checks import failed_in, finite, known, listed, quoted, ships, unknown, whole
+from quietarm.ocp.checks import (
+    failed_in,
+    finite,
+    forgotten_if_refused,
+    known,
+    listed,
+    quoted,
+    ships,
+    unknown,
+    whole,
+)
 
 PLAN = "plan"
 FRONT = "front"
 SEVERAL = "several"
 DATASET = "dataset"
 TAKEN = (PLAN, FRONT, SEVERAL, DATASET)
-"""What a format may take: a plan, a front, several of what it takes, the moves of a sweep."""
+"""Kinds of answers: a plan, a front, several of them at once, the moves of a sweep."""
 _TAKEN_BY_COMMANDS = (".json", ".png", ".pdf", ".svg", ".zarr", ".tex", ".txt")
-"""Endings that commands give to something else."""
+"""Endings that commands use for other files."""
 _OPTIONS = ("output", "format", "form", "plans", "plan", "path", "report", "quiet", "help")
-"""What `quietarm export` and `export_plan` have already."""
+"""Names that `quietarm export` and `export_plan` use themselves."""
 
 Content = str | bytes
 Answers = Mapping[str, Any] | Sequence[Any]
-"""What is exported: plans, fronts, or the moves of a sweep, perhaps by what they are called."""
+"""Plans, fronts, or the moves of a sweep; a mapping gives their labels."""
 Progress = Callable[[int, int], object]
 
 
 class Exported(NamedTuple):
-    """What a format makes: every file's content, written all or none, and what is said of it."""
+    """The content of every file, and notes for the user. All files are written, or none."""
 
     files: Mapping[Path, Content]
     notes: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
-class Setting:
-    """What a format may be told: `rate=500` of `export_plan`, `--rate 500` of quietarm export.
+class ExportSetting:
+    """A setting of a format: `rate=500` in `export_plan`, `--rate 500` in quietarm export.
 
     Parameters
     ----------
     name : str
-        A name in Python; that of the option has hyphens.
+        Its name in Python. The option has hyphens in place of underscores.
     default : float, int, str or None
-        Without it; None where the format chooses by itself, and then there is a `kind`.
+        The value that is used if none is given. With None the format chooses, and `kind` is needed.
     meaning : str
-        A sentence for the option's help.
+        A sentence for the help of the option.
     least, most : float
         The range of a number.
     unit : str
-        Of a number: Hz, mm/min; `-` of a share, which may be typed as 25%.
+        The unit of a number, such as Hz or mm/min. ``-`` is a share, which may be typed as 25%.
     kind : type, optional
-        float, int or str; by default that of the default. `object` is no option: only Python can
-        give it.
+        float, int or str; by default the type of `default`. A setting of the kind `object` can be
+        given in Python only.
+
+    Raises
+    ------
+    ValueError
+        If the name is not free, or the default is out of range.
     """
 
     name: str
@@ -77,19 +92,20 @@ class Setting:
                 f"setting {self.name} is {quoted(self.default)}; give a number or a text, or say "
                 "its kind"
             )
+        self.check(self.default)
 
     @property
     def type_of_value(self) -> type:
-        """Whether it is a number, a whole number or a text."""
+        """The type of its values: float, int, str or object."""
         return self.kind or type(self.default)
 
     @property
     def option(self) -> str:
-        """The option of quietarm export."""
+        """Its option on the command line."""
         return f"--{self.name.replace('_', '-')}"
 
     def check(self, value: Any) -> Any:
-        """The value, a number as such; ValueError beyond the range."""
+        """Return a value of its type; ValueError if it is none, or out of range."""
         kind = self.type_of_value
         if kind is object or (value is None and self.default is None):
             return value
@@ -109,62 +125,68 @@ class Setting:
 
 
 class ExportFormat(ABC):
-    """A format of files. A new one defines a name, endings and `content`.
+    """An export format. A new one is a class with a `name`, `endings`, a `meaning` and `content`.
 
-    A class in a new file of `views/formats`, or beside a plant in its `--plant-file`, is known to
+    A class in a new file of `views/formats`, or in a user's `--plant-file`, is known to
     `export_plan` and to every command that writes plans or fronts.
 
     Raises
     ------
     ValueError
-        When a subclass leaves something out.
+        If a subclass is incomplete; the message says what to add.
     """
 
     name: ClassVar[str]
-    """What messages call it, and `--format`."""
+    """The name in messages and for `--format`."""
     endings: ClassVar[tuple[str, ...]]
-    """Of its files' names, in small letters; the first one is shown."""
+    """Endings of its files, in small letters; lists show the first one."""
     meaning: ClassVar[str]
-    """What its files hold, as commands list it: a table, a film."""
+    """What its files contain, for lists of commands: a table, a film."""
     takes: ClassVar[tuple[str, ...]] = (PLAN,)
-    """What it can write: plan, front, several of these, dataset."""
-    settings: ClassVar[tuple[Setting, ...]] = ()
-    """What it may be told. Other commands than export write with the defaults."""
+    """What it can write: plan, front, several, dataset."""
+    settings: ClassVar[tuple[ExportSetting, ...]] = ()
+    """Its settings. Commands other than export use the defaults."""
     to_stdout: ClassVar[bool] = False
-    """Whether it can go to standard output: a single text."""
+    """True if it is a single text, which can go to standard output."""
     beside: ClassVar[tuple[str, ...]] = ()
-    """Endings of the files that stand beside the one that is named."""
+    """Endings of further files that are written beside the named one."""
     pieces: ClassVar[str] = ""
-    """What is counted while it is made, where that takes long: frames."""
+    """The unit of progress if writing takes long, such as frames."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         if "name" in vars(cls):
-            _check_definition(cls)
+            with forgotten_if_refused(cls):
+                _check_definition(cls)
 
     def content(self, plan: Plan, *args: Any, **settings: Any) -> Content:
-        """What the file of a plan holds; the settings come by their names."""
+        """Return the content of a plan's file; settings come as keyword arguments."""
         raise NotImplementedError
 
     def note(self, plan: Plan, *args: Any, **settings: Any) -> str:
-        """What is said of the file beside that it was written; by default nothing."""
+        """Return a line for the user about the file; by default an empty one."""
         return ""
 
     def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:
-        """Make all files: by default the one of a plan's `content`.
+        """Make all files; by default one file with the `content` of one answer.
 
-        Of several answers, or with several files, in place of `content`.
+        Override it for several answers or several files.
 
         Parameters
         ----------
         answers : mapping or sequence
-            What it takes, perhaps by name.
+            The answers; a mapping gives their labels.
         path : Path
-            The file that was asked for; `-` is standard output.
+            The file that was asked for; ``-`` is standard output.
         report : callable
-            Takes how many `pieces` are done, of how many.
+            Call it with the number of `pieces` done and their total.
         **settings : Any
-            All of its settings.
+            Every setting of the format.
+
+        Returns
+        -------
+        Exported or mapping
+            The content of every file by its path.
         """
         (plan,) = values_of(answers)
         content = self.content(plan, **settings)
@@ -175,11 +197,11 @@ class ExportFormat(ABC):
         return Exported({path: content}, [self.note(plan, **settings)])
 
     def check_path(self, path: Path) -> None:
-        """Refuse a file's name before the work, where the format has no use for it."""
+        """Raise ValueError for a file name that the format cannot use, before any work."""
         del path  # any will do
 
     def complete(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """All settings, as given or by default; ValueError of one that is not its own."""
+        """Return all settings, given or default; ValueError for one that it does not have."""
         own = {setting.name: setting for setting in self.settings}
         for name in given:
             if name not in own:
@@ -198,12 +220,13 @@ class ExportFormat(ABC):
         given: Mapping[str, Any],
         report: Progress | None = None,
     ) -> Exported:
-        """Make the files after checks of what is given; nothing is written yet."""
+        """Check answers, path and settings, and make the files; nothing is written."""
         self.refuse_others(values_of(answers))
         self.check_path(path)
         settings = self.complete(given)
         try:
-            return self.export(answers, path, report or _say_nothing, **settings)
+            made: Any = self.export(answers, path, report or _say_nothing, **settings)
+            return made if isinstance(made, Exported) else Exported({**made})
         except (ValueError, QuietarmError, OSError):
             raise
         except Exception as error:
@@ -212,12 +235,12 @@ class ExportFormat(ABC):
             raise failed_in(f"format {self.name}", type(self), error) from error
 
     def refuse_number(self, number: int) -> None:
-        """Refuse several answers where it takes one."""
+        """Raise ValueError for several answers if it takes one."""
         if number > 1 and SEVERAL not in self.takes:
             raise ValueError(f"{self.name} is of one plan, and {number} are given; give one")
 
     def refuse_others(self, answers: Sequence[Any]) -> None:
-        """Refuse answers that it does not take."""
+        """Raise ValueError for answers that it does not take."""
         self.refuse_number(len(answers))
         if not answers:
             raise ValueError(f"no {self.takes[0]} is given; give one")
@@ -232,18 +255,18 @@ class ExportFormat(ABC):
 
 
 def _say_nothing(done: int, total: int) -> None:
-    """What takes the progress where nobody wants to know."""
+    """Ignore progress."""
 
 
 def values_of(answers: Answers) -> Sequence[Any]:
-    """Answers without what they are called."""
+    """Return the answers without their labels."""
     return list(answers.values()) if isinstance(answers, Mapping) else answers
 
 
 def known_formats() -> Mapping[str, ExportFormat]:
-    """The formats by name: those of this folder, and of files that were loaded since.
+    """Return all formats by name: those of this folder, then those of the user's files.
 
-    ValueError where one of the user's has an ending that is another's.
+    ValueError if a user's format has an ending of another one.
     """
     for module in iter_modules([str(Path(__file__).parent)]):
         import_module(f"{__package__}.{module.name}")
@@ -261,12 +284,12 @@ def known_formats() -> Mapping[str, ExportFormat]:
 
 
 def formats_of(*taken: str) -> list[ExportFormat]:
-    """The formats that take one of these: a plan, a front."""
+    """Return the formats that take one of these kinds, such as plan or front."""
     return [form for form in known_formats().values() if {*taken} & {*form.takes}]
 
 
 def takers_of(setting: str) -> list[ExportFormat]:
-    """The formats that have a setting of this name."""
+    """Return the formats that have a setting of this name."""
     return [
         form for form in known_formats().values()
         if any(own.name == setting for own in form.settings)
@@ -274,13 +297,13 @@ def takers_of(setting: str) -> list[ExportFormat]:
 
 
 def endings_of(*taken: str) -> str:
-    """The endings of all formats, or of those that take something, as a message lists them."""
+    """List the endings of all formats, or of those that take a kind, for a message."""
     formats = formats_of(*taken) if any(taken) else known_formats().values()
     return listed(ending for form in formats for ending in form.endings)
 
 
 def format_of(path: Path) -> ExportFormat:
-    """The format of a file by the ending of its name; ValueError where there is none."""
+    """Return the format of a file by its ending; ValueError if no format has it."""
     ending = path.suffix.lower()
     for form in known_formats().values():
         if ending in form.endings:
@@ -294,7 +317,7 @@ def format_of(path: Path) -> ExportFormat:
 
 
 def _check_definition(kind: type[ExportFormat]) -> None:
-    """Refuse a class that is no format yet."""
+    """Raise ValueError for a class that is not a complete format."""
     label = kind.__name__
     for entry, example in {"name": "'mine'", "endings": "('.nc',)", "meaning": "'G-code'"}.items():
         if not hasattr(kind, entry):
@@ -317,5 +340,5 @@ def _check_definition(kind: type[ExportFormat]) -> None:
 
 
 def _is_ending(text: object) -> bool:
-    """Whether a text is the end of a file's name, with its point and in small letters."""
+    """Return True for the ending of a file name, with its dot and in small letters."""
     return isinstance(text, str) and Path(f"a{text}").suffix == text == text.lower() != ""

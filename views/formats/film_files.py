@@ -13,12 +13,12 @@ from quietarm.views.formats.export_format import (
     Answers,
     Exported,
     ExportFormat,
+    ExportSetting,
     Progress,
-    Setting,
     values_of,
 )
 
-DEFLECTION_SCALE = Setting(
+DEFLECTION_SCALE = ExportSetting(
     "deflection_scale", None, "Draw deflections so many times larger; by default the largest "
     "becomes up to a fifth of the structure.", kind=float,
 )  # fmt: skip
@@ -34,10 +34,10 @@ class GifFilm(ExportFormat):
     takes = (PLAN, SEVERAL)
     pieces = "frames"
     settings = (
-        Setting("speed", 1.0, "Of the clock; 25% is slow motion.", unit="-"),
+        ExportSetting("speed", 1.0, "Of the clock; 25% is slow motion.", unit="-"),
         DEFLECTION_SCALE,
-        Setting("width", 800, "In pixels.", *WIDTHS),
-        Setting("rate", FRAMES, "Frames in a second [Hz].", unit="Hz"),
+        ExportSetting("width", 800, "In pixels.", *WIDTHS),
+        ExportSetting("rate", FRAMES, "Frames in a second [Hz].", unit="Hz"),
     )
 
     def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:

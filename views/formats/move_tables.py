@@ -14,14 +14,14 @@ from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.joint_words import heading_unit
 from quietarm.ocp.planning.plan import ticks_of_move
-from quietarm.views.formats.export_format import Setting
+from quietarm.views.formats.export_format import ExportSetting
 
 Array = NDArray[np.float64]
-COLUMNS = Setting(
+COLUMNS = ExportSetting(
     "columns", "time,angle,speed,acceleration", "Columns, with units: time:ms,angle:deg,speed,"
     "acceleration,jerk,tip:mm,torque,power.",
 )  # fmt: skip
-RATE = Setting("rate", 1000.0, "Rows or points in a second [Hz].", unit="Hz")
+RATE = ExportSetting("rate", 1000.0, "Rows or points in a second [Hz].", unit="Hz")
 """What formats of rows may be told."""
 _WAYS: Mapping[str, Mapping[str, float]] = {
     ROTARY: {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},

@@ -12,8 +12,8 @@ from quietarm.views.formats.export_format import (
     Answers,
     Exported,
     ExportFormat,
+    ExportSetting,
     Progress,
-    Setting,
 )
 from quietarm.views.formats.film_files import DEFLECTION_SCALE
 from quietarm.views.report.words import counted
@@ -28,7 +28,9 @@ class PageFile(ExportFormat):
     takes = (PLAN, FRONT, SEVERAL)
     settings = (
         DEFLECTION_SCALE,
-        Setting("known_points", None, "Points that are known of a task's fronts.", kind=object),
+        ExportSetting(
+            "known_points", None, "Points that are known of a task's fronts.", kind=object
+        ),
     )
 
     def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:

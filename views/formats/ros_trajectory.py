@@ -9,7 +9,7 @@ import numpy as np
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import yaml_string
 from quietarm.views.formats.between_rows import interpolation_note
-from quietarm.views.formats.export_format import ExportFormat, Setting
+from quietarm.views.formats.export_format import ExportFormat, ExportSetting
 from quietarm.views.formats.move_tables import RATE, times_of
 from quietarm.views.report.templates import templates
 
@@ -20,7 +20,7 @@ class RosTrajectory(ExportFormat):
     name = "ros"
     endings = (".yaml", ".yml")
     meaning = "a JointTrajectory of ROS 2"
-    settings = (RATE, Setting("joint", "joint", "The joint's name."))
+    settings = (RATE, ExportSetting("joint", "joint", "The joint's name."))
     to_stdout = True
 
     def content(self, plan: Plan, *args: Any, rate: float, joint: str) -> str:

@@ -1,4 +1,4 @@
-"""A panel of one's own, beside those that pictures of motions have."""
+"""The base class of a user's own panel in pictures of motions."""
 
 from __future__ import annotations
 
@@ -10,52 +10,51 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import Floor, Plan
-from quietarm.ocp.checks import failed_in, known, quoted
+from quietarm.ocp.checks import failed_in, forgotten_if_refused, known, quoted
 
 Array = NDArray[np.float64]
 
 
 class Panel(ABC):
-    """A panel over time: a name, a title, and the values that it draws.
+    """A user's own panel over time: a class with a `name`, a `title` and `values`.
 
-    A class beside a plant in its `--plant-file`, or anywhere in Python, is drawn by `motion_figure`
-    and by every command that draws a motion, once it is defined. `draw_quantity(plan, name, ax)`
-    draws it alone.
+    `motion_figure` and every command that draws a motion include it as soon as it is defined, in a
+    `--plant-file` or anywhere in Python. `draw_quantity(plan, name, ax)` draws it alone.
 
     Raises
     ------
     ValueError
-        When a subclass has a name without a title.
+        If a subclass has a name and no title.
     """
 
     name: ClassVar[str]
-    """What it is asked for by."""
+    """The name for `draw_quantity` and `motion_figure`."""
     title: ClassVar[str]
-    """Above the panel, with the unit: bending moment [N m]."""
+    """The title with its unit, such as bending moment [N m]."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if isinstance(vars(cls).get("name"), str) and not isinstance(
-            getattr(cls, "title", None), str
-        ):
-            raise ValueError(
-                f"panel {cls.name} has no title; give one, as title = 'bending moment [N m]'"
-            )
+        named = isinstance(vars(cls).get("name"), str)
+        with forgotten_if_refused(cls):
+            if named and not isinstance(getattr(cls, "title", None), str):
+                raise ValueError(
+                    f"panel {cls.name} has no title; give one, as title = 'bending moment [N m]'"
+                )
 
     @abstractmethod
     def values(self, motion: Plan | Floor) -> Any:
-        """What is drawn at the times of ``motion.trajectory``, whose `sample` has the motion.
+        """Return the values at the times of ``motion.trajectory``, whose `sample` has the motion.
 
-        An array of a value each time; or several arrays by what the legend calls them.
+        One array of a value for each time, or a mapping of such arrays by their labels.
         """
 
     def fits(self, motion: Plan | Floor) -> bool:
-        """Whether a picture of this motion has the panel unasked; by default every one."""
+        """Return True if pictures of this motion include the panel by default."""
         del motion
         return True
 
     def curves(self, motion: Plan | Floor) -> dict[str, Array]:
-        """The values by what the legend calls them; ValueError where its own lines fail."""
+        """Return the curves by their labels; ValueError if its code fails."""
         try:
             found = self.values(motion)
             named = found if isinstance(found, Mapping) else {"": found}
@@ -73,7 +72,7 @@ class Panel(ABC):
 
 
 def known_panels(shipped: tuple[str, ...]) -> dict[str, Panel]:
-    """The user's panels by name; ValueError where one has the name of a shipped quantity."""
+    """Return the user's panels by name; ValueError if one has the name of a shipped quantity."""
     panels = {name: kind() for name, kind in known(Panel).items()}
     for name, panel in panels.items():
         if name in shipped:

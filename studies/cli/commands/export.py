@@ -21,8 +21,8 @@ from quietarm.views.formats.export_format import (
     DATASET,
     FRONT,
     ExportFormat,
+    ExportSetting,
     Progress,
-    Setting,
     endings_of,
     format_of,
     known_formats,
@@ -85,7 +85,7 @@ def _value_after(name: str, words: Sequence[str]) -> str | None:
 
 def _setting_options() -> list[click.Option]:
     """An option for each name of a setting, with what it means to which format."""
-    by_option = dict[str, list[tuple[str, Setting]]]()
+    by_option = dict[str, list[tuple[str, ExportSetting]]]()
     for form in known_formats().values():
         for setting in form.settings:
             if setting.type_of_value is not object:
@@ -96,15 +96,15 @@ def _setting_options() -> list[click.Option]:
     ]
 
 
-def _help_of(settings: Sequence[tuple[str, Setting]]) -> str:
+def _help_of(settings: Sequence[tuple[str, ExportSetting]]) -> str:
     """Every meaning once, after the formats that it is of, with its default."""
-    of = dict[Setting, list[str]]()
+    of = dict[ExportSetting, list[str]]()
     for name, setting in settings:
         of.setdefault(setting, []).append(name)
     return " ".join(_help_line(setting, names) for setting, names in of.items())
 
 
-def _help_line(setting: Setting, names: Sequence[str]) -> str:
+def _help_line(setting: ExportSetting, names: Sequence[str]) -> str:
     """What a setting means to some formats."""
     default = setting.default
     words = "" if default is None else f"{default:g}" if isinstance(default, float) else default
@@ -112,7 +112,7 @@ def _help_line(setting: Setting, names: Sequence[str]) -> str:
     return f"{', '.join(names)}: {setting.meaning}{ending}"
 
 
-def _metavar(settings: Sequence[tuple[str, Setting]]) -> str:
+def _metavar(settings: Sequence[tuple[str, ExportSetting]]) -> str:
     kinds = {setting.type_of_value for _, setting in settings}
     return "TEXT" if str in kinds else "NUMBER"
 
@@ -212,7 +212,7 @@ def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
     return form.complete(settings) | settings_of_studies(form)
 
 
-def _read(setting: Setting, text: str) -> Any:
+def _read(setting: ExportSetting, text: str) -> Any:
     """What was typed of a setting, as the value that it is."""
     if setting.type_of_value is str:
         return text
