@@ -51,8 +51,6 @@ from .studies import bench as bench
 from .studies import compare as compare
 from .studies.sweep import sweep as sweep
 from .views import ExportFormat as ExportFormat
-from .views import ExportSetting as ExportSetting
-from .views import export_plan as export_plan
 from .views import pictures as pictures
 from .views.pictures import motion_figure as motion_figure
 

@@ -271,7 +271,7 @@ def test_an_export_format(follow, refused, done):
     assert (places, words) == ([*positions("move.nc")[0][9::10]], {("B", "600")})
     for file in ("fastest.gcode", "zv.nc"):
         assert positions(file)[0][-1] == pytest.approx(30)
-    (path,) = qa.export_plan(plan, "python.nc", rate=10, axis="B")
+    (path,) = qa.views.export_plan(plan, "python.nc", rate=10, axis="B")
     assert path.read_text() == Path("slow.nc").read_text()
     own = "--plant-file gcode.py"
     assert "--axis TEXT" in done(
