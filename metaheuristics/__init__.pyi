@@ -11,6 +11,7 @@ from .jobs import run_jobs as run_jobs
 from .methods.preset import Preset as Preset
 from .methods.presets import PAPER_BOX as PAPER_BOX
 from .methods.presets import PRESETS as PRESETS
+from .methods.search_method import SearchMethod as SearchMethod
 from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of
@@ -20,5 +21,6 @@ from .problems.recorded import RecordedFunction as RecordedFunction
 from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .run_search import SearchProgress as SearchProgress
 from .run_search import search as search
+from .score import Indicator as Indicator
 from .score import Reference as Reference
 from .spread import Spread as Spread

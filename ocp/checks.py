@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import inspect
 import reprlib
-from collections.abc import Callable, Collection, Iterable, Mapping, Set
+import sys
+import traceback
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
+from contextlib import contextmanager
 from dataclasses import is_dataclass
 from functools import wraps
 from os import PathLike
@@ -44,7 +47,9 @@ __all__ = [
     "clipped",
     "count_of",
     "cut",
+    "failed_in",
     "finite",
+    "forgotten_if_refused",
     "has_no",
     "hashable",
     "install",
@@ -58,6 +63,7 @@ __all__ = [
     "positive",
     "quoted",
     "several",
+    "ships",
     "spelling",
     "table_of",
     "takes",
@@ -217,7 +223,7 @@ def known(family: type[T]) -> dict[str, type[T]]:
         name = vars(kind).get("name")
         if not isinstance(name, str):
             continue
-        if name in classes and _ships(classes[name]) and not _ships(kind):
+        if name in classes and ships(classes[name]) and not ships(kind):
             raise ValueError(
                 f"name {quoted(name)} of {kind.__name__} is that of quietarm's "
                 f"{classes[name].__name__}; give {kind.__name__} another"
@@ -231,12 +237,31 @@ def _descendants(family: type[T]) -> list[type[T]]:
     descendants: list[type[T]] = []
     for kind in family.__subclasses__():
         descendants += [kind, *_descendants(kind)]
-    return sorted(descendants, key=lambda kind: not _ships(kind))
+    return sorted(descendants, key=lambda kind: not ships(kind))
 
 
-def _ships(kind: type[Any]) -> bool:
+def ships(kind: type[Any]) -> bool:
     """Whether a class comes with quietarm."""
     return kind.__module__.startswith("quietarm.")
+
+
+@contextmanager
+def forgotten_if_refused(kind: Any) -> Iterator[None]:
+    """Take the name from a class whose definition is refused: it may live on, and is not known."""
+    try:
+        yield
+    except ValueError:
+        kind.name = None
+        raise
+
+
+def failed_in(what: str, kind: type[Any], error: BaseException) -> ValueError:
+    """What to raise where lines of a user's own class fail: what, where and why, in one line."""
+    file = getattr(sys.modules.get(kind.__module__), "__file__", None)
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == file]
+    place = f" ({file}, line {lines[-1]})" if lines else ""
+    return ValueError(f"{what}{place} fails: {words_of_error(error)}; mend it")
 
 
 NotNegative = Annotated[float, Meta(ge=0)]

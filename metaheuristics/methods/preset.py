@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from numbers import Integral
 from typing import TYPE_CHECKING
 
+from quietarm.metaheuristics.methods.search_method import SearchMethod
 from quietarm.metaheuristics.methods.settings import MethodSetting, Value, with_defaults
 from quietarm.ocp.checks import install
 
@@ -53,6 +54,8 @@ class Preset:
         Whether it takes steps of the model's gradient, which no noise reaches.
     most : int
         Most individuals. pymoo's methods compare all pairs: these fill up to 2 GB of memory.
+    own : type, optional
+        The user's own class, in place of the `kind`.
     """
 
     name: str
@@ -70,10 +73,32 @@ class Preset:
     residual_and_energy: bool = False
     takes_gradients: bool = False
     most: int = 10_000
+    own: type[SearchMethod] | None = None
+
+    @classmethod
+    def of_own(cls, own: type[SearchMethod]) -> Preset:
+        """The entry of a user's own class."""
+        is_function = own.run is not SearchMethod.run
+        return cls(
+            own.name,
+            own.label,
+            "one's own",
+            "",
+            own.defaults(),
+            population=1 if is_function else own.population,
+            generations=own.budget if is_function else own.generations,
+            is_function=is_function,
+            own=own,
+        )
 
     @property
     def settings(self) -> tuple[MethodSetting, ...]:
         """Its settings beside population and generations."""
+        if self.own is not None:
+            return tuple(
+                MethodSetting(name, name, value, "of one's own", self.own.check)
+                for name, value in self.defaults.items()
+            )
         return tuple(MethodSetting.of(argument, value) for argument, value in self.defaults.items())
 
     def build(
@@ -104,6 +129,9 @@ class Preset:
             When a setting or the population is not known or out of range, or a library is missing.
         """
         values = self.checked(population, settings)
+        if self.own is not None:
+            own = self.own(**values)
+            return own if self.is_function else own.make(population)
         if self.needs and find_spec(self.needs) is None:
             raise ValueError(f"{self.name} needs {self.needs}; {install(self.needs)}")
         from quietarm.metaheuristics.methods.building import directions, with_arguments

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from quietarm.metaheuristics.methods.preset import Preset
+from quietarm.metaheuristics.methods.search_method import SearchMethod
 from quietarm.metaheuristics.methods.settings import Value
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import known, unknown
 
 PAPER_BOX: dict[str, float] = {"single-link": 0.2, "arm-on-flexible-link": 0.5}
 """Largest absolute coefficient in the paper's searches, by plant, of eqs (12) and (17)."""
@@ -42,5 +44,38 @@ def _arguments(defaults: Mapping[str, Any]) -> Iterator[tuple[str, Value]]:
             yield name, None if value == _UNSET else value
 
 
-PRESETS: Mapping[str, Preset] = _read_presets()
+class Presets(Mapping[str, Preset]):
+    """Every method by its name: quietarm's, and then those of the user's own classes.
+
+    ValueError where one of these has the name of quietarm's.
+    """
+
+    _shipped: Mapping[str, Preset] = _read_presets()
+
+    def _all(self) -> Mapping[str, Preset]:
+        own = known(SearchMethod)
+        for name, kind in own.items():
+            if name in self._shipped:
+                raise ValueError(
+                    f"name {name!r} of the search {kind.__name__} is quietarm's own; give another"
+                )
+        return {**self._shipped, **{name: _of_own(kind) for name, kind in own.items()}}
+
+    def __getitem__(self, name: str) -> Preset:
+        return self._shipped[name] if name in self._shipped else self._all()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+
+@cache
+def _of_own(kind: type[SearchMethod]) -> Preset:
+    """The one entry of a class."""
+    return Preset.of_own(kind)
+
+
+PRESETS: Mapping[str, Preset] = Presets()
 """By name."""

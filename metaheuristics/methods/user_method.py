@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
 
 from numpy.typing import ArrayLike, NDArray
 
+from quietarm.metaheuristics.methods.preset import PRESETS
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
 if TYPE_CHECKING:
@@ -115,13 +116,19 @@ def _refuse_unused(outcome: object, function: RecordedFunction) -> None:
 
 
 def digest_of(method: Method) -> str:
-    """A digest of one's own method, by which runs of an older one are known; empty for a name.
+    """A digest of one's own method, by which runs of an older one are known; empty of quietarm's.
 
     Of a function its code, defaults and what it encloses, not what it calls; of an object all that
-    it holds, and where it is asked and told the code of its class.
+    it holds, and where it is asked and told the code of its class. Of a name that of its class.
     """
     if isinstance(method, str):
-        return ""
+        preset = PRESETS.get(method.partition("+")[0])
+        if preset is None or preset.own is None:
+            return ""
+        whole = hashlib.sha256()
+        for part in _code_of_class(preset.own):
+            whole.update(part)
+        return whole.hexdigest()[:12]
     import joblib  # not at the top: it takes long to load
 
     digest = hashlib.sha256()
@@ -142,9 +149,14 @@ def _code_of(method: Any) -> Iterator[bytes]:
     if isinstance(method, FunctionType):
         yield from _bytes_of(method.__code__)
     elif isinstance(method, AskTell) and not is_of_pymoo(method):
-        for _, value in sorted(vars(type(method)).items()):
-            if isinstance(value, FunctionType):
-                yield from _bytes_of(value.__code__)
+        yield from _code_of_class(type(method))
+
+
+def _code_of_class(kind: type[Any]) -> Iterator[bytes]:
+    """The code of all functions that a class defines."""
+    for _, value in sorted(vars(kind).items()):
+        if isinstance(value, FunctionType):
+            yield from _bytes_of(value.__code__)
 
 
 def _bytes_of(code: CodeType) -> Iterator[bytes]:

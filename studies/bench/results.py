@@ -16,9 +16,9 @@ from quietarm.metaheuristics import Job, NamedProblem
 from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
-    INDICATORS,
     Indicator,
     filled,
+    known_indicators,
     objectives,
     scores_on_the_way,
 )
@@ -374,8 +374,10 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
         "residual_window_s": front.task.residual_window,
         "points": len(front.points),
     }
-    for name, indicator in INDICATORS.items():
+    for name, indicator in known_indicators().items():
         column = column_of(indicator)
+        if column in row:
+            raise ValueError(f"{column} is a column already; give the indicator another name")
         for suffix, scores in (("", run.scores), ("_between", run.scores_between)):
             score = lacking(scores[name], indicator)
             row[f"{column}{suffix}"] = told_apart(score) if column == MISSING else score

@@ -45,9 +45,10 @@ def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> c
 
 
 COMMON = (
-    # eager: the plants in it are then known by name
+    # eager: what is in it is then known by name
     option("--plant-file", type=Parsed("file", load_plant_file), is_eager=True,
-           help="Plants of your own: a file in Python, which is run."),
+           help="Your own plants, profiles, energies, searches, indicators, formats or panels: a "
+           "file in Python, which is run."),
     option("--quiet", is_flag=True, help="Show no progress."),
 )  # fmt: skip
 
@@ -282,7 +283,10 @@ def profile_options(*more: str, words: str = "") -> tuple[click.Option, click.Op
 
 
 def method_option(
-    methods: Iterable[str], elsewhere: Mapping[str, str], default: str, words: str
+    methods: Iterable[str] | Callable[[], Iterable[str]],
+    elsewhere: Mapping[str, str],
+    default: str,
+    words: str,
 ) -> click.Option:
     """--method; an error says of methods `elsewhere` which command has them."""
     return option("--method", type=Named("method", methods, elsewhere), default=default, help=words)

@@ -7,7 +7,7 @@ from functools import partial
 
 import pandas as pd
 
-from quietarm.metaheuristics.score import BETWEEN, INDICATORS
+from quietarm.metaheuristics.score import BETWEEN, known_indicators
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.ocp.objectives import objectives_on
@@ -98,7 +98,7 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
         indicator.label: None
         if hidden
         else spread_words(group.spread("scores", name), indicator.form)
-        for name, indicator in INDICATORS.items()
+        for name, indicator in known_indicators().items()
     }
     front = group.runs[0].front
     return {
@@ -139,7 +139,9 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 "points": len(front.points),
                 "residual_window_s": front.task.residual_window,
             }
-            for name in INDICATORS:
+            for name in known_indicators():
+                if name in row:
+                    raise ValueError(f"{name} is a column already; give the indicator another name")
                 row |= {name: run.scores[name], f"{name}_found": run.scores_found[name]}
             for i, level in enumerate(comparison.levels):
                 at = f"at_{scale * level:g}{shown}"
@@ -179,7 +181,7 @@ def fronts_report(
             "residual_place": residual_place,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
-            "indicators": INDICATORS,
+            "indicators": known_indicators(),
             "several": any(
                 len(group.runs) > 1 for comparison in comparisons for group in comparison.groups
             ),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -18,6 +19,15 @@ from quietarm.ocp.joint_words import added_words
 from quietarm.ocp.limits import EXPORT
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
+from quietarm.views.formats.export_format import (
+    DATASET,
+    PLAN,
+    Answers,
+    Exported,
+    ExportFormat,
+    Progress,
+    values_of,
+)
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import limit_words, move_of, moved, window_words
 from quietarm.views.tips import tip_words
@@ -30,13 +40,33 @@ _STATEMENTS = re.compile(r"^static int casadi_f0\([^)]*\) \{\n(.*?)\n  return 0;
 """What CasADi's generator writes: small functions, and the body of the first function."""
 
 
-def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
+class CSource(ExportFormat):
+    """The motion at any time from the coefficients, with nothing but math.h."""
+
+    name = "c"
+    endings = (".c",)
+    beside = (".h",)
+    meaning = "C source"
+    takes = (PLAN, DATASET)
+
+    def check_path(self, path: Path) -> None:
+        """Refuse a name that no function can have."""
+        name = path.stem
+        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            raise ValueError(
+                f"{name}.c would hold a function {name}_at, which is no name in C; give a file "
+                "name of letters, digits and _ that begins with a letter"
+            )
+
+    def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:
+        """Header and source."""
+        (moves,) = values_of(answers)
+        header, source = _c_files(moves, path.stem)
+        return Exported({path.with_suffix(".h"): header, path: source})
+
+
+def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     """Header and source whose functions are called after a file's name."""
-    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-        raise ValueError(
-            f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
-            "of letters, digits and _ that begins with a letter"
-        )
     if isinstance(moves, Plan):
         task = moves.task
         versions = moves.record.versions

@@ -24,6 +24,7 @@ from .motion import draw_quantity as draw_quantity
 from .motion import drawn_quantities as drawn_quantities
 from .motion import floor_figure as floor_figure
 from .motion import motion_figure as motion_figure
+from .panel import Panel as Panel
 from .robustness_figures import draw_motions as draw_motions
 from .robustness_figures import draw_robustness as draw_robustness
 from .robustness_figures import motions_figure as motions_figure

@@ -31,6 +31,7 @@ from quietarm.views.pictures.axes import (
 )
 from quietarm.views.pictures.grammar import AFTER_ARRIVAL, ARRIVAL, LIMIT, PLAN, Dash, Look, looks
 from quietarm.views.pictures.meaning import is_plain_cycloid, meaning_of
+from quietarm.views.pictures.panel import Panel, known_panels
 from quietarm.views.report.captions import caption_of_motions, verified_words
 from quietarm.views.report.words import raised, title_of_picture
 from quietarm.views.tips import tip_scale
@@ -112,7 +113,8 @@ def draw_quantity(
     motions : sequence of Line, Plan or Floor
         The motions; a plan alone is drawn over the plain cycloid of its task.
     quantity : str
-        A name of `drawn_quantities`: angle, speed, acceleration, jerk, deflection, torque or power.
+        A name of `drawn_quantities`: angle, speed, acceleration, jerk, deflection, torque or power;
+        or that of a `Panel` of one's own.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
     curve : int, optional
@@ -129,19 +131,25 @@ def draw_quantity(
     ValueError
         When there is no motion, or the quantity is not known.
     """
-    if quantity not in drawn_quantities():
-        raise ValueError(unknown("quantity", quantity, drawn_quantities()))
+    if quantity not in (drawn := _drawn()):
+        raise ValueError(unknown("quantity", quantity, drawn))
     return _draw(lines_of(motions), quantity, axes_or_new(ax), curve)
+
+
+def _drawn() -> list[str]:
+    """What can be drawn, with the user's own panels."""
+    return [*drawn_quantities(), *known_panels(drawn_quantities())]
 
 
 def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = None) -> Axes:
     """Draw all curves of a quantity, or the one of a joint or a tip by its number."""
+    if quantity not in drawn_quantities():
+        return _draw_own(lines, known_panels(drawn_quantities())[quantity], ax)
     plant = lines[0].plan.task.plant
     drawn = list[Array]()
     title = heading_of_plant(plant, quantity, curve)
     for line in lines:
-        further = ("-.", "--", (0, (5, 1, 1, 1, 1, 1)))  # none dotted, as a limit is
-        other_styles: list[Dash] = [style for style in further if style != line.style]
+        other_styles = _other_styles(line)
         for i, values in enumerate(curves(line.plan, quantity)):
             if curve not in (None, i):
                 continue
@@ -151,9 +159,7 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
             label = line.label + of
             drawn.append(values)
             _draw_curve(ax, line, values, style, label)
-    durations = {line.plan.task.duration for line in lines}
-    for duration in durations:
-        draw_arrival(ax, duration)
+    durations = _draw_arrivals(ax, lines)
     for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
         # a limit holds on the way, not for what comes after it
@@ -161,6 +167,35 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
                 linestyle=LIMIT.dash, label=label)  # fmt: skip
     if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
+    return _named_over_time(ax, title)
+
+
+def _draw_own(lines: Sequence[Line], panel: Panel, ax: Axes) -> Axes:
+    """Draw a panel of the user's own."""
+    for line in lines:
+        styles = [line.style, *_other_styles(line)]
+        for i, (name, values) in enumerate(panel.curves(line.plan).items()):
+            label = f"{line.label}, {name}" if name else line.label
+            _draw_curve(ax, line, values, styles[i % len(styles)], label)
+    _draw_arrivals(ax, lines)
+    return _named_over_time(ax, panel.title)
+
+
+def _other_styles(line: Line) -> list[Dash]:
+    """Dashes of the further curves of a motion."""
+    further: tuple[Dash, ...] = ("-.", "--", (0, (5, 1, 1, 1, 1, 1)))  # none dotted, as a limit is
+    return [style for style in further if style != line.style]
+
+
+def _draw_arrivals(ax: Axes, lines: Sequence[Line]) -> set[float]:
+    """Draw when motions arrive; their durations [s]."""
+    durations = {line.plan.task.duration for line in lines}
+    for duration in durations:
+        draw_arrival(ax, duration)
+    return durations
+
+
+def _named_over_time(ax: Axes, title: str) -> Axes:
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
@@ -207,8 +242,7 @@ def names_of_curves(plant: Plant, quantity: str) -> list[str]:
 def _which(plant: Plant, quantity: str, curve: int) -> str:
     """Which joint or tip a curve is of, where there are several."""
     joints = plant.joint_names
-    of_joints = quantity in QUANTITIES and QUANTITIES[quantity].of_joints
-    if len(joints) > 1 and (of_joints or quantity == "angle"):
+    if len(joints) > 1 and _is_of_joints(quantity):
         return f", {joints[curve]}"
     return _which_tip(plant, curve) if curve else ""
 
@@ -230,8 +264,7 @@ def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
 
 def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> str:
     """Return the heading of a plant's quantity: of all its joints, or of one by its number."""
-    of_joints = quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
-    kind = plant.joint if curve is None or not of_joints else plant.joint_kinds[curve]
+    kind = plant.joint if curve is None or not _is_of_joints(quantity) else plant.joint_kinds[curve]
     return heading(quantity, kind, plant.tip_unit)
 
 
@@ -254,7 +287,8 @@ def motion_figure(
         Title of the picture; by default what the motions take and leave, how that is verified, and
         of which plant, move and limits.
     quantities : sequence of str, optional
-        Names of `drawn_quantities`; by default all but the power, and the jerk where it is limited.
+        Names of `drawn_quantities`; by default all but the power, the jerk where it is limited, and
+        every `Panel` of one's own.
         `PAPER_PANELS` are those of the paper.
 
     Returns
@@ -274,6 +308,9 @@ def motion_figure(
         quantities = [
             name for name in drawn_quantities() if name in limited or _is_always_drawn(name)
         ]
+        own = known_panels(drawn_quantities())
+        plans = [line.plan for line in lines]
+        quantities += [name for name, panel in own.items() if all(map(panel.fits, plans))]
     if len(lines[0].plan.task.plant.joint_names) > 1 and len(quantities) > 1:
         return _figure_of_joints(lines, title, quantities)
     count = len(quantities)
@@ -318,9 +355,9 @@ def _figure_of_joints(
     """A row for each joint with what it does, and below them the tips, the power, the legend."""
     task = lines[0].plan.task
     names = task.plant.joint_names
-    of_joints = [name for name in quantities if name == "angle" or QUANTITIES[name].of_joints]
+    of_joints = [name for name in quantities if _is_of_joints(name)]
     others = [name for name in quantities if name not in of_joints]
-    below = [(name, curve) for name in others for curve in range(len(curves(lines[0].plan, name)))]
+    below = [(name, curve) for name in others for curve in _panels_below(lines[0].plan, name)]
     figure = new_figure(_BESIDE_JOINTS + _PANEL_OF_JOINT * max(len(of_joints), 3), 3.2 + len(names))
     grid = figure.add_gridspec(2, 1, height_ratios=(len(names), 1.7))
     upper = grid[0].subgridspec(len(names), max(len(of_joints), 1))
@@ -337,6 +374,16 @@ def _figure_of_joints(
     room.legend(*legend_of([*axes, *last]), loc="center left", fontsize=10, frameon=False)
     _head(figure, lines, title)
     return figure
+
+
+def _is_of_joints(quantity: str) -> bool:
+    """Whether a quantity has a curve for each joint."""
+    return quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
+
+
+def _panels_below(plan: Plan | Floor, quantity: str) -> range:
+    """The curves that have a panel each below the joints': of a panel of one's own all have one."""
+    return range(len(curves(plan, quantity)) if quantity in drawn_quantities() else 1)
 
 
 def _panels_of_joints(

@@ -25,12 +25,12 @@ from quietarm.studies.cli.options import (
     profile_options,
 )
 from quietarm.studies.cli.outputs import (
-    PAGE,
     PICTURE,
     answer_files,
     check_page,
     finish,
     output_option,
+    refuse_formats,
 )
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
@@ -56,7 +56,7 @@ def _coefficients(text: str) -> list[float] | Path:
     OBJECTIVES,
     SENSITIVITIES,
     output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
-                   PICTURE: "a picture", PAGE: "a page with the motions"}),
+                   PICTURE: "a picture"}, formats=["plan", "front"]),
 )  # fmt: skip
 def evaluate(given: Given) -> None:
     """Compute residual, energy and peaks of coefficients, an input shaper, a path or a table.
@@ -85,6 +85,7 @@ def _evaluate_coefficients(given: Given) -> None:
     """A plan of coefficients, or of an input shaper."""
     task = given.read_task()
     given.refuse(["bound", "evaluations", "objectives"], "is for a table of results")
+    refuse_formats(given.output, (".json", ".csv", PICTURE), "plan")
     if given.profile in SHAPERS:
         given.refuse(["coefficients", "terms"], f"is not for {given.profile}")
         profile = given.read_profile(task)
@@ -117,6 +118,7 @@ def _evaluate_table(given: Given) -> None:
 
     task = given.read_task()
     given.refuse(["sensitivities"], "is not for a table")
+    refuse_formats(given.output, (".json", ".csv", PICTURE), "front")
     check_page(given.output, given.objectives)
     if given.profile in SHAPERS:
         raise ValueError(

@@ -1,37 +1,40 @@
-"""`quietarm export`: moves for a controller, as films, and as a page."""
+"""`quietarm export`: moves for a controller, as films, as a page, or in a format of one's own."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import click
 
-from quietarm.ocp import Plan
+from quietarm.models import load_plant_file
+from quietarm.models.units import UNITS, parse_quantity
 from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.answers.read_answers import load_fronts_and_plans, load_plans
 from quietarm.studies.cli.given import Given
-from quietarm.studies.cli.options import busy, command, counting, option
-from quietarm.studies.cli.outputs import finish
-from quietarm.studies.cli.types import INPUT, SHARE, Named, Parsed
-from quietarm.views.formats.between_rows import OF_POINTS, interpolation_note
-from quietarm.views.formats.formats import (
-    COLUMNS,
-    FORMATS,
-    FRAMES,
-    JOINT,
-    RATE,
-    WIDTHS,
-    content_of,
-    export_plan,
+from quietarm.studies.cli.options import Command, busy, counting, option
+from quietarm.studies.cli.outputs import finish, settings_of_studies
+from quietarm.studies.cli.types import INPUT, Named, Parsed
+from quietarm.views.formats.export_format import (
+    DATASET,
+    FRONT,
+    ExportFormat,
+    ExportSetting,
+    Progress,
+    endings_of,
     format_of,
+    known_formats,
+    takers_of,
 )
-from quietarm.views.formats.move_tables import columns_of
-from quietarm.views.pictures.motion import Line
+from quietarm.views.formats.formats import write_in
 from quietarm.views.report.saving import STDOUT, File
-from quietarm.views.report.words import counted
 
-_TO_STDOUT = [name for name, form in FORMATS.items() if form.to_stdout]
+
+def _to_stdout() -> list[str]:
+    """The formats that can go to standard output."""
+    return [form.name for form in known_formats().values() if form.to_stdout]
 
 
 def _output(text: str) -> Path:
@@ -40,23 +43,86 @@ def _output(text: str) -> Path:
     return path if path == STDOUT else check_writable(path)
 
 
-@command(
+class ExportCommand(Command):
+    """It has an option for each setting of a format, those of the user's own file too."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Load the user's file first: what it brings has options."""
+        path = _value_after("--plant-file", args)
+        if path is not None:
+            try:
+                load_plant_file(path)
+            except ValueError as error:
+                hint = "'--plant-file'"
+                raise click.BadParameter(str(error), ctx=ctx, param_hint=hint) from None
+        return super().parse_args(ctx, args)
+
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """Its own options, those of the formats, and those of all commands."""
+        params = super().get_params(ctx)
+        own = len(self.params)
+        return [*params[:own], _format_option(), *_setting_options(), *params[own:]]
+
+
+def _format_option() -> click.Option:
+    """--format, of standard output."""
+    possible = _to_stdout()
+    words = f"Of standard output: {' or '.join(possible)}. [default: {possible[0]}]"
+    return option("--format", "form", type=Named("format", known_formats), help=words)
+
+
+def _value_after(name: str, words: Sequence[str]) -> str | None:
+    """What was typed of an option, if it was."""
+    for word, following in zip(words, [*words[1:], None]):
+        if word == "--":
+            return None
+        if word == name:
+            return following
+        if word.startswith(f"{name}="):
+            return word.removeprefix(f"{name}=")
+    return None
+
+
+def _setting_options() -> list[click.Option]:
+    """An option for each name of a setting, with what it means to which format."""
+    by_option = dict[str, list[tuple[str, ExportSetting]]]()
+    for form in known_formats().values():
+        for setting in form.settings:
+            if setting.type_of_value is not object:
+                by_option.setdefault(setting.option, []).append((form.name, setting))
+    return [
+        option(name, settings[0][1].name, help=_help_of(settings), metavar=_metavar(settings))
+        for name, settings in by_option.items()
+    ]
+
+
+def _help_of(settings: Sequence[tuple[str, ExportSetting]]) -> str:
+    """Every meaning once, after the formats that it is of, with its default."""
+    of = dict[ExportSetting, list[str]]()
+    for name, setting in settings:
+        of.setdefault(setting, []).append(name)
+    return " ".join(_help_line(setting, names) for setting, names in of.items())
+
+
+def _help_line(setting: ExportSetting, names: Sequence[str]) -> str:
+    """What a setting means to some formats."""
+    default = setting.default
+    words = "" if default is None else f"{default:g}" if isinstance(default, float) else default
+    ending = f" [default: {words}]" if default is not None else ""
+    return f"{', '.join(names)}: {setting.meaning}{ending}"
+
+
+def _metavar(settings: Sequence[tuple[str, ExportSetting]]) -> str:
+    kinds = {setting.type_of_value for _, setting in settings}
+    return "TEXT" if str in kinds else "NUMBER"
+
+
+@click.command(cls=ExportCommand, params=[
     click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN|FRONT ..."),
     option("--output", "-o", type=Parsed("file", _output), required=True,
            help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
            "output."),
-    option("--format", "form", type=Named("format", FORMATS),
-           help=f"Of standard output: {' or '.join(_TO_STDOUT)}. [default: {_TO_STDOUT[0]}]"),
-    option("--columns", default=COLUMNS, help="Of csv and mat, with units: time:ms,angle:deg,"
-           "speed,acceleration,jerk,tip:mm,torque,power."),
-    option("--rate", type=float, help="Rows, points or frames in a second [Hz]. [default: "
-           f"{RATE:g}, {FRAMES:g} of a film]"),
-    option("--joint", default=JOINT, help="The joint's name, for ROS."),
-    option("--speed", type=SHARE, default="100%", help="Of a film's clock; 25% is slow motion."),
-    option("--deflection-scale", type=float, help="Draw deflections so many times larger. "
-           "[default: the largest becomes up to a fifth of the structure]"),
-    option("--width", type=click.IntRange(*WIDTHS), default=800, help="Of a film, in pixels."),
-)  # fmt: skip
+])  # fmt: skip
 def export(given: Given) -> None:
     """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB), as a film (gif, mp4) or a page.
 
@@ -71,6 +137,8 @@ def export(given: Given) -> None:
     The page (html) is one file that needs no network. Of a saved FRONT one drags along the
     trade-off and sees each point's motion; further fronts and plans of the move lie beside it.
 
+    A format of your own stands beside a plant in its --plant-file.
+
     \b
     Examples:
       quietarm export plan.json --output move.c
@@ -81,91 +149,78 @@ def export(given: Given) -> None:
       quietarm export plan.json zvd.json --output move.gif --speed 25%
       quietarm export front.json nsga2.json --output front.html
     """  # noqa: D301  # \b is click's: do not rewrap
-    plans = given.plans
-    output = given.output
-    name = _format(given)
-    settings = _settings(given, name)
-    form = FORMATS[name]
-    if not (form.is_film or form.is_page) and len(plans) > 1:
-        raise ValueError(f"{name} is of one plan, and {len(plans)} are given; give one")
-    written = [output]
-    notes = list[str]()
-    files = list[File]()
-    if len(plans) == 1 and plans[0].is_dir():
-        if name != "c":
-            raise ValueError(f"{plans[0]} has many moves, which are exported as C; give a .c file")
-        from quietarm.studies.sweep.library_in_c import export_moves
-
-        written = export_moves(plans[0], output)
-    elif form.is_film:
-        notes = [_write_film(plans, output, settings)]
-    elif form.is_page:
-        notes = [_write_page(plans, output, settings)]
-    else:
-        (plan,) = load_plans(plans).values()
-        notes = _notes(plan, name, settings)
-        if output == STDOUT:
-            content = content_of(plan, name, **settings)
-            files = [(STDOUT, lambda path: write_whole(path, content))]
-            written = []
-        else:
-            written = export_plan(plan, output, **settings)
-    finish(files, *notes, *(f"wrote {path}" for path in written))
+    form = _format(given)
+    settings = _settings(given, form)
+    if given.output != STDOUT:
+        form.check_path(given.output)
+    answers = _answers(form, given.plans)
+    if given.output == STDOUT:
+        made = form.make(answers, STDOUT, settings, lambda done, total: None)
+        content = made.files[STDOUT]
+        files: list[File] = [(STDOUT, lambda path: write_whole(path, content))]
+        return finish(files, *filter(None, made.notes))
+    with _progress(form) as report:
+        written, notes = write_in(form, answers, given.output, settings, report)
+    return finish([], *notes, *(f"wrote {path}" for path in written))
 
 
-def _format(given: Given) -> str:
+def _progress(form: ExportFormat) -> AbstractContextManager[Progress | None]:
+    """Show that the work goes on, with what it counts where it counts."""
+    return counting(0, form.pieces) if form.pieces else busy("making the file")
+
+
+def _answers(form: ExportFormat, paths: Sequence[Path]) -> Mapping[str, Any]:
+    """What is exported, by what it is called, after its motions were evaluated again."""
+    if len(paths) == 1 and paths[0].is_dir():
+        if DATASET not in form.takes:
+            raise ValueError(
+                f"{paths[0]} has many moves, which are exported as {endings_of(DATASET)}; give "
+                "such a file"
+            )
+        from quietarm.studies.sweep.exported_moves import moves_to_export
+
+        return {paths[0].stem: moves_to_export(paths[0])}
+    form.refuse_number(len(paths))
+    return load_fronts_and_plans(paths) if FRONT in form.takes else load_plans(paths)
+
+
+def _format(given: Given) -> ExportFormat:
     """The format by the file's ending; of standard output by --format."""
     if given.output != STDOUT:
         given.refuse(["form"], "is for --output - alone: a file's ending says its format")
         return format_of(given.output)
-    name = given.form or _TO_STDOUT[0]
-    if name not in _TO_STDOUT:
+    possible = _to_stdout()
+    form = known_formats()[given.form or possible[0]]
+    if not form.to_stdout:
         raise ValueError(
-            f"{name} cannot go to standard output, only {' and '.join(_TO_STDOUT)}; give a name, "
-            f"as move{FORMATS[name].endings[0]}"
+            f"{form.name} cannot go to standard output, only {' and '.join(possible)}; give a "
+            f"name, as move{form.endings[0]}"
         )
-    return name
+    return form
 
 
-def _settings(given: Given, name: str) -> dict[str, Any]:
+def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
     """What was typed of the format's settings; those of other formats are refused."""
-    for setting in dict.fromkeys(name for form in FORMATS.values() for name in form.takes):
-        takers = [taker for taker, form in FORMATS.items() if setting in form.takes]
-        if name not in takers:
-            given.refuse([setting], f"is for {', '.join(takers)}, not for {name}")
-    typed = given.pick(*FORMATS[name].takes)
-    return {setting: value for setting, value in typed.items() if value is not None}
+    for other in known_formats().values():
+        for setting in other.settings:
+            takers = [taker.name for taker in takers_of(setting.name)]
+            if form.name not in takers:
+                why = f"is for {', '.join(takers)}, not for {form.name}"
+                given.refuse([setting.name], why)
+    typed = [setting for setting in form.settings if given.typed(setting.name)]
+    settings = {setting.name: _read(setting, getattr(given, setting.name)) for setting in typed}
+    return form.complete(settings) | settings_of_studies(form)
 
 
-def _notes(plan: Plan, name: str, settings: dict[str, Any]) -> list[str]:
-    """What a controller leaves that interpolates between the rows, where that matters."""
-    if "rate" not in FORMATS[name].takes:
-        return []
-    columns = OF_POINTS
-    if "columns" in settings:
-        columns = tuple(columns_of(settings["columns"], plan.task.plant))
-    return [interpolation_note(plan, settings.get("rate", RATE), columns)]
-
-
-def _write_film(plans: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:
-    """Write a film of plans; how long and how large it is."""
-    from quietarm.views.film import animate
-
-    lines = [Line(plan, label) for label, plan in load_plans(plans).items()]
-    film = animate(lines if len(lines) > 1 else lines[0].plan, **settings)
-    with counting(film.frames, "frames") as report:
-        film.save(output, report)
-    return f"{film.frames} frames, {film.seconds:.1f} s, {output.stat().st_size / 1e3:.0f} kB"
-
-
-def _write_page(answers: tuple[Path, ...], output: Path, settings: dict[str, Any]) -> str:
-    """Write a page of fronts and plans; how many motions it has, and how large it is."""
-    from quietarm.studies.reproduce.paper import paper_points
-    from quietarm.views.page.trade_off import trade_off
-
-    loaded = load_fronts_and_plans(answers)
-    with busy("sampling the motions"):
-        page = trade_off(loaded, known_points=paper_points, **settings)
-    page.save(output)
-    motions = counted(sum(len(move["points"]) for move in page.moves), "motion")
-    return f"{motions}, {output.stat().st_size / 1e3:.0f} kB"
+def _read(setting: ExportSetting, text: str) -> Any:
+    """What was typed of a setting, as the value that it is."""
+    if setting.type_of_value is str:
+        return text
+    if setting.type_of_value is float:
+        if setting.unit not in UNITS:
+            text = text.strip().removesuffix(setting.unit)
+        return parse_quantity(text, setting.unit or "-", f"a value of {setting.option}")
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"{setting.option} is {text!r}; give a whole number") from None

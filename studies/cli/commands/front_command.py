@@ -27,7 +27,6 @@ from quietarm.studies.cli.options import (
     profile_options,
 )
 from quietarm.studies.cli.outputs import (
-    PAGE,
     PICTURE,
     answer_files,
     check_page,
@@ -62,8 +61,8 @@ _SEARCHES = {
            "plain cycloid, and say by how much the two differ."),
     option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
            "method: from each to less energy and no larger residual."),
-    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture",
-                   PAGE: "a page to drag along it"}),
+    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"},
+                  formats=["front"]),
 )  # fmt: skip
 def front(given: Given) -> None:
     """Find the trade-off of residual, energy and peaks by the gradient.

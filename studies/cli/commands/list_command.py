@@ -43,7 +43,7 @@ def list_(given: Given) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     names = given.names or KINDS
     shown = list[str | list[tuple[str, str]]]()
-    plants = known_plants() if given.plant_file is None else given.plant_file
+    plants = given.plant_file or known_plants()
     for name in names:
         if name.endswith(OF_ROBOTS):
             robot = Robot.load(name)

@@ -43,9 +43,7 @@ from quietarm.studies.cli.options import (
     profile_options,
 )
 from quietarm.studies.cli.outputs import (
-    PAGE,
     PICTURE,
-    TRAJECTORY,
     answer_files,
     ending_of,
     finish,
@@ -78,10 +76,8 @@ _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
     option("--in-full", is_flag=True, help="Correct the plan of a robot until hardly anything is "
            "left by its whole equations, every spring nonlinear."),
     SENSITIVITIES, YES,
-    output_option({
-        ".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture",
-        TRAJECTORY: "a JointTrajectory of ROS 2 at 1 kHz", PAGE: "a page with the motion",
-    }),
+    output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"},
+                  formats=["plan"]),
 )  # fmt: skip
 def plan(given: Given) -> None:
     """Find the move of least energy whose residual vibration is within a limit.
@@ -153,8 +149,8 @@ def _refuse_meaningless(given: Given) -> None:
         given.refuse(["sensitivities", "in_full"] if free else _OF_SOLVES, why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
-        of_plans = (".csv", TRAJECTORY, PAGE)
-        refused = [ending_of(path) for path in given.output if ending_of(path) in of_plans]
+        endings = [ending_of(path) for path in given.output]
+        refused = [ending for ending in endings if ending not in (".json", PICTURE)]
         if free and refused:
             raise ValueError(
                 f"a free motion is written as .json or as a picture, not as {refused[0]}"

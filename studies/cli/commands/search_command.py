@@ -35,7 +35,6 @@ from quietarm.studies.cli.options import (
     progress_console,
 )
 from quietarm.studies.cli.outputs import (
-    PAGE,
     PICTURE,
     answer_files,
     check_page,
@@ -62,7 +61,7 @@ _BY_GRADIENT = {
 
 @command(
     *TASK, *ROBOT_PATH,
-    method_option(PRESETS, _BY_GRADIENT, "nsga2",
+    method_option(lambda: [*PRESETS], _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     *profile_options(), BOUND,
     option("--population", type=int, help="Individuals, or particles in a swarm."),
@@ -73,8 +72,8 @@ _BY_GRADIENT = {
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
     WORKERS, YES,
-    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts",
-                   PAGE: "a page to drag along it"}),
+    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"},
+                  formats=["front"]),
 )  # fmt: skip
 def search(given: Given) -> None:
     """Find the trade-off of residual, energy and peaks with a metaheuristic, without derivatives.

@@ -1,4 +1,4 @@
-"""The moves of a sweep as C: a table, and what interpolates it."""
+"""The moves of a sweep, as formats take them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,10 @@ from pathlib import Path
 
 from quietarm.ocp import InfeasibleTaskError
 from quietarm.studies.sweep.library import MoveLibrary
-from quietarm.views.formats.formats import write_c
 
 
-def export_moves(dataset: Path, path: Path) -> list[Path]:
-    """Write the moves of a sweep as C: a table, and what interpolates it.
-
-    InfeasibleTaskError where moves between its cells break a limit.
-    """
+def moves_to_export(dataset: Path) -> MoveLibrary:
+    """The moves of a sweep; InfeasibleTaskError where moves between its cells break a limit."""
     library = MoveLibrary(dataset)
     between = library.between()
     if not between.keeps_limits:
@@ -21,4 +17,4 @@ def export_moves(dataset: Path, path: Path) -> list[Path]:
             f"moves between the cells of {dataset} break their limits by up to "
             f"{between.of_limits - 1:.1%}, and nothing was written; {between.remedy}"
         )
-    return write_c(library, path)
+    return library
