@@ -35,6 +35,13 @@ class PlantFile:
 _file_of: dict[type[Plant], PlantFile] = {}
 _module_of: dict[bytes, tuple[ModuleType, PlantFile]] = {}
 """The module of every file that was run, by its content."""
+_added: list[object] = []
+"""Entries of one's own that are no classes, as quantities and figures."""
+
+
+def note_added(entry: object) -> None:
+    """Note an entry of one's own: a file that adds one is a plant file without a plant, too."""
+    _added.append(entry)
 
 
 @interruptible
@@ -166,6 +173,7 @@ def _is_incomplete(plant: type[Plant]) -> bool:
 def _run(file: PlantFile) -> ModuleType:
     """The module of a file; ValueError with the line where it fails, or where it has nothing."""
     module = ModuleType(f"plant file {file.path}, {file.digest}")
+    added_before = len(_added)
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     module.__file__ = file.path
     sys.path.append(folder := str(Path(file.path).resolve().parent))  # it may import its neighbour
@@ -191,7 +199,8 @@ def _run(file: PlantFile) -> ModuleType:
     ours = f"{__name__.partition('.')[0]}."
     kinds = list(_classes_of(module))
     bases = {base.__module__ for kind in kinds for base in kind.__mro__[1:]}
-    if not any(base.startswith(ours) for base in bases) or _has_only_unfinished(module):
+    has_own = len(_added) > added_before or any(base.startswith(ours) for base in bases)
+    if not has_own or _has_only_unfinished(module):
         raise ValueError(
             f"plant file {file.path} defines no plant; write a class of models.Plant in it, with a "
             f"name, modes, {', '.join(sorted(Plant.__abstractmethods__))}"

@@ -16,6 +16,7 @@ import numpy as np
 from quietarm.interrupts import interruptible
 from quietarm.models import Plant
 from quietarm.models.dimensions import JOULE, TIP, WATT, WAY, Unit, Words
+from quietarm.models.plant_file import note_added
 from quietarm.ocp.checks import instance, quoted, takes, unknown
 from quietarm.ocp.limits import (
     PAGE,
@@ -226,6 +227,7 @@ def add_figure(figure: Figure) -> Figure:
             f"the name of a figure is {quoted(name)}; give letters, digits and _, as rms_torque"
         )
     _known.added[name] = figure
+    note_added(figure)
     return figure
 
 

@@ -27,6 +27,7 @@ from quietarm.models.dimensions import (
 )
 from quietarm.models.dimensions import JERK as OF_JERK
 from quietarm.models.joint_motion import MIXED, ROTARY
+from quietarm.models.plant_file import note_added
 from quietarm.ocp.checks import instance, not_negative, quoted, takes
 from quietarm.ocp.sample import Sample, symbolic_sample
 
@@ -215,6 +216,7 @@ def add_quantity(quantity: Quantity) -> Quantity:
             f"the name of a quantity is {quoted(name)}; give letters, digits and _, as tip_speed"
         )
     _quantities[name] = quantity
+    note_added(quantity)
     return quantity
 
 

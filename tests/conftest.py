@@ -17,7 +17,7 @@ from pages import blocks
 
 from quietarm.metaheuristics import Indicator, SearchMethod
 from quietarm.models import DualLinkManipulator, Plant, compiled, known_plants, plant_file
-from quietarm.ocp import Energy, JointProfile
+from quietarm.ocp import FIGURES, QUANTITIES, Energy, JointProfile, remove_figure, remove_quantity
 from quietarm.ocp.checks import ships
 from quietarm.views import ExportFormat
 from quietarm.views.pictures.panel import Panel
@@ -79,11 +79,16 @@ def _plants_of_this_test_are_forgotten(monkeypatch):
 def what_is_made_up_is_forgotten(monkeypatch, _plants_of_this_test_are_forgotten):
     """What a test defines is known by name during that test only."""
     before = set(classes_with_a_name())
+    quantities, figures = {*QUANTITIES}, {*FIGURES}
     monkeypatch.setattr(plant_file, "_module_of", dict(plant_file._module_of))
     yield
     for kind in classes_with_a_name():
         if kind not in before and not ships(kind):
             kind.name = None  # which is no name
+    for name in {*QUANTITIES} - quantities:
+        remove_quantity(name)
+    for name in {*FIGURES} - figures:
+        remove_figure(name)
 
 
 def classes_with_a_name(family=object):

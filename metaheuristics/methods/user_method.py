@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
 
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.metaheuristics.methods.preset import PRESETS
+from quietarm.metaheuristics.methods.presets import PRESETS
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
 if TYPE_CHECKING:

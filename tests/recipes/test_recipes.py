@@ -3,6 +3,7 @@
 What the page shows is what runs: its blocks of Python are the files, its lines the commands.
 """
 
+import json
 import re
 import runpy
 import shlex
@@ -28,8 +29,8 @@ pytestmark = pytest.mark.usefixtures("what_is_made_up_is_forgotten", "quick_pict
 
 ENTRIES = re.split(r"^## ", PAGES["extend"], flags=re.MULTILINE)[1:]
 RECIPES = {entry.partition("\n")[0]: entry for entry in ENTRIES}
-WITHOUT_A_TEST = {"A limit or a figure", "A solver's option"}
-"""Their entries change files of quietarm itself: no file of a user makes them up."""
+WITHOUT_A_TEST = {"A solver's option"}
+"""A field of quietarm's own solver: tests/studies/cli/test_solver_options.py makes one up."""
 LINK = qa.PointToPoint(qa.SingleLinkManipulator(), target=qa.deg(30), duration=0.8)
 NAMED = "single-link-30deg-0.8s-2-terms"
 
@@ -354,6 +355,71 @@ def test_a_plot(follow, call, monkeypatch):
     code, _, told = call(f"{lines_of('A plot')[0]} --quiet")
     assert (code, told.count("\n")) == (2, 1)
     assert "panel heat (heat.py, line 12) fails: IndexError" in told
+
+
+def tip_acceleration(plan):
+    """The tip's acceleration over the move, by differences of its displacements [m/s^2]."""
+    time = np.linspace(0, plan.task.duration, 8001)
+    tip = plan.sampled(time).tip[:, 0]
+    return np.gradient(np.gradient(tip, time), time)[4:-4]
+
+
+def test_a_limit(follow, refused):
+    follow("A limit", only="plan evaluate export")
+    plan, fastest = Plan.load("plan.json"), Plan.load("fastest.json")
+    (limit,) = plan.task.limits
+    assert (limit.name, str(limit)) == ("tip_acceleration", "tip acceleration 4 m/s^2")
+    peak = np.abs(tip_acceleration(plan)).max()
+    assert peak == pytest.approx(plan.motion.peak_tip_acceleration, rel=1e-3)
+    assert peak < 4 * 1.002
+    free = qa.plan_move(LINK, qa.CycloidPolynomial(6))
+    assert np.abs(tip_acceleration(free)).max() > 4.2  # so the limit bites
+    assert np.abs(tip_acceleration(fastest)).max() == pytest.approx(8, rel=2e-3)
+    assert "tip acceleration" in Path("move.c").read_text()
+    again = qa.PointToPoint(LINK.plant, LINK.target, LINK.duration, tip_acceleration_limit=4.0)
+    assert again == plan.task
+    move = "single-link --plant-file tip_acceleration.py --target 30deg --duration 0.8"
+    assert "give a positive number" in refused(f"plan {move} --tip-acceleration-limit=-1")
+    assert "is not an acceleration" in refused(f"plan {move} --tip-acceleration-limit 3Nm")
+    assert "did you mean" in refused(f"plan {move} --tip-aceleration-limit 3")
+
+
+@pytest.mark.slow
+def test_a_limit_of_fronts_and_grids(follow):
+    follow("A limit")
+    (limit,) = Front.load("front.json").task.limits
+    assert limit.name == "tip_acceleration"
+    found = Front.load("search.json")
+    assert found.objectives[-1] == "peak_tip_acceleration"
+    best = found.points[0]
+    again = qa.evaluate_coefficients(found.task, best.coefficients, profile=found.profile)
+    assert found.objective_values[0, 2] == pytest.approx(
+        again.motion.peak_tip_acceleration, rel=1e-3
+    )
+    assert MoveLibrary(Path("moves.zarr")).grid.task.limits == Front.load("front.json").task.limits
+
+
+def test_a_figure(follow, refused):
+    printed = follow("A figure", only="plan evaluate compare")
+    plan = Plan.load("plan.json")
+    time = np.linspace(0, 0.8, 4001)
+    torque = plan.sampled(time).torque[:, 0]
+    expected = np.sqrt(np.trapezoid(torque**2, time) / 0.8)
+    assert plan.motion.rms_torque == pytest.approx(expected, rel=1e-4)
+    assert f"RMS torque  {expected:.3g}" in re.sub(" {2,}", "  ", printed[0])
+    assert "RMS torque" in plan._repr_html_()
+    assert json.loads(Path("plan.json").read_text())["stated"]["rms_torque"] == pytest.approx(
+        expected, rel=1e-4
+    )
+    assert "RMS torque" in Path("compared/report.md").read_text()
+
+
+@pytest.mark.slow
+def test_a_figure_of_fronts_and_pages(follow):
+    follow("A figure")
+    assert "rms_torque_Nm" in pd.read_csv("front.csv").columns
+    assert "RMS torque" in Path("front.html").read_text()
+    assert "RMS torque" in Path("move.c").read_text()
 
 
 PLACES = {"An export format": "views/formats", "A profile": "ocp/profiles", "A plant": "models"}
