@@ -7,6 +7,12 @@ from types import ModuleType
 
 MOVED = {"figures": "pictures"}
 """Names of `qa`."""
+MOVED_WITHIN = {
+    "models": {"joint_unit": "Unit"},
+    "ocp": {"Motion": "Figures"},
+    "pictures": {"QUANTITIES_DRAWN": "drawn_quantities"},
+}
+"""Names of its packages."""
 
 _ROOMS = {
     "studies.identify": "machine.identify",

@@ -27,7 +27,7 @@ class ResidualLimit(NamedTuple):
         ValueError where it is negative, or that of an uncertain task is 0.
         """
         if stated is not None:
-            stated = not_negative("residual limit", stated, "m")
+            stated = not_negative("residual limit", stated, task.plant.tip_unit)
         if task.uncertainty is None:
             return cls(stated or 0.0)
         size = quiet_residual(task) if stated is None else stated
