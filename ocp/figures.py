@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -167,27 +167,19 @@ _FIRST = (
         shown=frozenset(),
     ),
 )
-_LAST = (
-    Figure("peak_power", WATT, Words("peak power"), _peak_power, shown=frozenset({PAGE})),
-    Figure(
-        "overshoot",
-        WAY,
-        Words("overshoot"),
-        lambda candidate: candidate.overshoot,
-        digits=3,
-        shown=frozenset({REPORT}),
-    ),
+_POWER = Figure("peak_power", WATT, Words("peak power"), _peak_power, shown=frozenset({PAGE}))
+_OVERSHOOT = Figure(
+    "overshoot",
+    WAY,
+    Words("overshoot"),
+    lambda candidate: candidate.overshoot,
+    digits=3,
+    shown=frozenset({REPORT}),
 )
 
 
-class _Known(NamedTuple):
-    """Figures by name, those of one's own apart."""
-
-    shipped: dict[str, Figure]
-    added: dict[str, Figure]
-
-
-_known = _Known({figure.name: figure for figure in (*_FIRST, *_LAST)}, {})
+_added: dict[str, Figure] = {}
+"""Those of one's own, by name."""
 
 
 class _Table(Mapping[str, Figure]):
@@ -203,8 +195,8 @@ class _Table(Mapping[str, Figure]):
         return len(self._entries())
 
     def _entries(self) -> dict[str, Figure]:
-        peaks = [peak_figure(quantity) for quantity in QUANTITIES.values()]
-        figures = (*_FIRST, *peaks, *_LAST, *_known.added.values())
+        torque, *peaks = map(peak_figure, QUANTITIES.values())
+        figures = (*_FIRST, torque, _POWER, *peaks, _OVERSHOOT, *_added.values())
         return {figure.name: figure for figure in figures}
 
 
@@ -220,13 +212,13 @@ def add_figure(figure: Figure) -> Figure:
     before is replaced. ValueError where the name is taken, or is none of Python.
     """
     name = figure.name
-    if name in FIGURES and name not in _known.added:
+    if name in FIGURES and name not in _added:
         raise ValueError(f"the figure {name!r} is quietarm's own; give yours another name")
     if not name.isidentifier():
         raise ValueError(
             f"the name of a figure is {quoted(name)}; give letters, digits and _, as rms_torque"
         )
-    _known.added[name] = figure
+    _added[name] = figure
     note_added(figure)
     return figure
 
@@ -234,7 +226,7 @@ def add_figure(figure: Figure) -> Figure:
 @takes()
 def remove_figure(name: str) -> None:
     """Forget a figure that was added, as at the end of a test; nothing where there is none."""
-    _known.added.pop(name, None)
+    _added.pop(name, None)
 
 
 def figures_in(place: str) -> list[Figure]:
@@ -244,7 +236,7 @@ def figures_in(place: str) -> list[Figure]:
 
 def added_figures(place: str) -> list[Figure]:
     """Those of them that are one's own: for places where others stand in words of their own."""
-    return [figure for figure in _known.added.values() if place in figure.shown]
+    return [figure for figure in _added.values() if place in figure.shown]
 
 
 class Figures(Mapping[str, Any], Ranged):

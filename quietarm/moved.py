@@ -7,8 +7,12 @@ from types import ModuleType
 
 MOVED = {"figures": "pictures"}
 """Names of `qa`."""
-MOVED_IN_OCP = {"Motion": "Figures"}
-"""Names of `qa.ocp`."""
+MOVED_WITHIN = {
+    "models": {"joint_unit": "Unit"},
+    "ocp": {"Motion": "Figures"},
+    "pictures": {"QUANTITIES_DRAWN": "drawn_quantities"},
+}
+"""Names of its packages."""
 
 ROOMS = {
     "models.checks": "models.number_checks",

@@ -19,6 +19,19 @@ def test_a_class_that_has_another_name_says_it():
 
 
 @pytest.mark.parametrize(
+    ("package", "name", "now"),
+    [
+        ("models", "joint_unit", "models.Unit"),
+        ("ocp", "Motion", "ocp.Figures"),
+        ("pictures", "QUANTITIES_DRAWN", "pictures.drawn_quantities"),
+    ],
+)
+def test_so_does_a_name_of_a_package(package, name, now):
+    with pytest.raises(AttributeError, match=rf"{name} has moved to quietarm\.(views\.)?{now}$"):
+        getattr(getattr(qa, package), name)
+
+
+@pytest.mark.parametrize(
     ("room", "now"),
     [
         ("studies.identify", "machine.identify"),

@@ -125,7 +125,7 @@ class Front(Answer):
             raise ValueError("the peaks of its entries are not those of its objectives")
         for i, point in enumerate(self.points, start=1):
             self.profile.checked(point.coefficients)
-            not_negative(f"residual of point {i}", point.residual, "m")
+            not_negative(f"residual of point {i}", point.residual, self.task.plant.tip_unit)
             not_negative(f"energy of point {i}", point.energy, "J")
             if set(point.peaks) != set(quantities):
                 raise ValueError(

@@ -16,7 +16,7 @@ def checked_residual_limit(task: PointToPoint, stated: float | None) -> float:
     it is negative, or that of an uncertain task is 0.
     """
     if stated is not None:
-        stated = not_negative("residual limit", stated, "m")
+        stated = not_negative("residual limit", stated, task.plant.tip_unit)
     if task.uncertainty is None:
         return stated or 0.0
     size = quiet_residual(task) if stated is None else stated

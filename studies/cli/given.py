@@ -57,7 +57,9 @@ class Given:
 
     @property
     def _params(self) -> list[click.Parameter]:
-        return self._context.command.get_params(self._context)
+        """The command's own arguments and options."""
+        command: Any = self._context.command
+        return command.own_params
 
     def refuse(self, names: Collection[str], why: str) -> None:
         """Refuse options that were typed where they have no meaning."""

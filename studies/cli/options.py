@@ -64,14 +64,20 @@ class Command(click.Command):
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Its own options, limits of quantities of one's own, and those of all commands."""
-        *params, help_option = super().get_params(ctx)
+        """Its own options and those of all commands."""
+        help_option = super().get_params(ctx)[-1]
+        return [*self.own_params, *COMMON, help_option]
+
+    @property
+    def own_params(self) -> list[click.Parameter]:
+        """Its own arguments and options, with limits of quantities of one's own."""
+        params = list(self.params)
         names = [param.name for param in params]
         if LIMITS[-1].name in names:
             last = names.index(LIMITS[-1].name) + 1
             added = [quantity for quantity in QUANTITIES.values() if quantity.limit not in names]
             params[last:last] = map(limit_option, added)
-        return [*params, *COMMON, help_option]
+        return params
 
     def invoke(self, ctx: click.Context) -> None:
         """Run it, unless one file is named twice, or its answer would go nowhere."""

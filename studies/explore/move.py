@@ -145,7 +145,9 @@ class Explored:
     def _values(self) -> dict[str, Any]:
         """Values of the dials in SI, None where one is empty."""
         settings = {"residual_limit": self.residual_limit, "bound": self.bound, **self.coefficients}
-        known = {**self.task.plant.parameters, **vars(self.task), **settings}
+        limits = {quantity.limit: None for quantity in QUANTITIES.values()}
+        limits |= {QUANTITIES[name].limit: size for name, size in self.task.bounds.items()}
+        known = {**self.task.plant.parameters, **vars(self.task), **limits, **settings}
         return {name: known[name] for name in self.dials}
 
     @cached_property
