@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.fits.columns import BasisColumns
-from quietarm.machine.identify.fits.least_squares import least_squares
 from quietarm.machine.recordings.recording import Recording
 
 Array = NDArray[np.float64]
@@ -78,7 +77,7 @@ class SwingModel:
                 root = weights[signal] ** 0.5
                 free = root[:, None] * free
                 target = root * target
-            best[signal, self.fixed :] = least_squares(free, target)
+            best[signal, self.fixed :], *_ = np.linalg.lstsq(free, target, rcond=None)
         return best
 
     def fitted(self, p: Array, rows: NDArray[np.bool_] | None = None) -> Array:

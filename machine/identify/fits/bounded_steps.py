@@ -1,4 +1,4 @@
-"""Linear least squares of many rows and few columns."""
+"""Steps and variances of least squares, within bounds."""
 
 from __future__ import annotations
 
@@ -8,27 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
-def least_squares(columns: Array, target: Array) -> Array:
-    """What of columns is nearest to a target, or to each of several.
-
-    By the normal equations where the columns are told apart well: that is much faster.
-    """
-    many_rows = 100
-    told_apart = 1e11  # condition of the columns' products
-    size = np.linalg.norm(columns, axis=0)
-    there = size > 0
-    if len(columns) > many_rows and there.any():
-        scaled = columns[:, there] / size[there]
-        products = scaled.T @ scaled
-        if np.linalg.cond(products) < told_apart:
-            shares = np.zeros((columns.shape[1], *target.shape[1:]))
-            of_scaled = np.linalg.solve(products, scaled.T @ target)
-            shares[there] = (of_scaled.T / size[there]).T
-            return shares
-    solve: Any = np.linalg.lstsq
-    return solve(columns, target, rcond=None)[0]
 
 
 def variances_of(slopes: Array) -> Array:
