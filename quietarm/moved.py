@@ -14,6 +14,7 @@ _ROOMS = {
     "studies.figures": "views.pictures",
     "studies.report": "views.report",
     "studies.export": "views",
+    "studies.explore": "views.page",
     "studies.reading": "studies.answers",
     "studies.tips": "views.tips",
 }

@@ -26,7 +26,7 @@ _ALIKE = 0.005
 
 
 @dataclass(frozen=True)
-class Figures:
+class ShownFigures:
     """The figures of a motion in SI units, in the order of `figure_names`.
 
     Of several joints `peak_joint` is the one with the largest torque; else it is empty.
