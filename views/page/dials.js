@@ -1,6 +1,6 @@
 // The numbers that are set by hand: fields, and sliders that go in small steps with the shift key.
 const TENTH = 0.1;
-const DIGITS = 5; // that are shown
+const DIGITS = 5; // that are shown, after the point of what is below 1
 const fields = new Map(); // by name: what shows a value, and the ends of a slider
 const GROUPS = { move: "dials-move", shape: "dials-shape", limits: "dials-limits" };
 
@@ -54,7 +54,7 @@ const addDial = (dial, onChange) => {
 const show = (field, value) => {
   const { number, range } = field;
   field.value = value;
-  number.value = value === null ? "" : Number(value.toPrecision(DIGITS));
+  number.value = value === null ? "" : Number(Math.abs(value) < 1 && Math.abs(value) > 1e-3 ? value.toFixed(DIGITS) : value.toPrecision(DIGITS));
   if (!range || value === null) return;
   range.dataset.value = value;
   range.value = value;

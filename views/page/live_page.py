@@ -9,15 +9,17 @@ from __future__ import annotations
 import json
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
 
 from quietarm.models import Plant
-from quietarm.ocp import Front, evaluate_coefficients, evaluate_robustness
+from quietarm.ocp import Front, Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.ocp.front.curve import Progress, no_report
 from quietarm.ocp.planning.named_profiles import families
+from quietarm.ocp.uncertainty import FREQUENCY, check_ranges
 from quietarm.views.page.by_hand import FILES, MoveByHand, Question, menu, plain_of, words_of_plant
 from quietarm.views.page.page_moves import KnownPoints, Move, move_by_hand, moves_of
 from quietarm.views.page.trade_off import colour_name, page_html, shown_move
@@ -199,14 +201,7 @@ def _robustness(asked: MoveByHand) -> dict[str, Any]:
     """The residual over the error of the frequency, and what is tolerated."""
     plan = asked.motion
     unit, scale = tip_scale(plan.task.plant.tip_unit)
-    for largest in _ERRORS:
-        try:
-            robustness = evaluate_robustness(plan.candidate, {"frequency": largest}, samples=1)
-        except ValueError:
-            if largest == _ERRORS[-1]:
-                raise
-            continue
-        break
+    robustness = evaluate_robustness(plan.candidate, {FREQUENCY: _error_of(plan)}, samples=1)
     (sweep,) = robustness.sweeps
     return {
         "unit": unit,
@@ -214,3 +209,12 @@ def _robustness(asked: MoveByHand) -> dict[str, Any]:
         "residuals": (scale * sweep.figures.residual).tolist(),
         "tolerated": scale * robustness.tolerated,
     }
+
+
+def _error_of(plan: Plan) -> float:
+    """Find the largest error of the frequency that a plant can have: a robot's tables end."""
+    for error in _ERRORS[:-1]:
+        with suppress(ValueError):
+            check_ranges(plan.task.plant, {FREQUENCY: error})
+            return error
+    return _ERRORS[-1]

@@ -48,7 +48,7 @@ const holdRoom = () => {
   const byLength = [...state.move.points].sort((a, b) => b.sentence.length - a.sentence.length);
   const heights = byLength.slice(0, LONGEST).map((point) => {
     say(point);
-    return room.offsetHeight;
+    return Math.ceil(room.getBoundingClientRect().height); // a part of a pixel would move what is below
   });
   room.style.minHeight = `${Math.max(...heights)}px`;
 };

@@ -43,17 +43,18 @@ _TURN = 0.5
 def serve(page: LivePage, tell: Callable[[str], object], browser: bool = True) -> None:
     """Serve the page until Ctrl-C; `tell` is told its address."""
     desk = Desk(page)
-    with Listener(desk) as listener:
+    with suppress(KeyboardInterrupt), Listener(desk) as listener:
         threading.Thread(target=listener.serve_forever, daemon=True).start()
-        address = f"http://127.0.0.1:{listener.server_address[1]}/"
-        tell(address)
-        tell("Ctrl-C ends it")
-        if browser:  # in the text browser of a terminal, it stays until that ends
-            threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
-        with suppress(KeyboardInterrupt):
+        try:
+            address = f"http://127.0.0.1:{listener.server_address[1]}/"
+            tell(address)
+            tell("Ctrl-C ends it")
+            if browser:  # in the text browser of a terminal, it stays until that ends
+                threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
             while True:
                 desk.work()
-        listener.shutdown()
+        finally:
+            listener.shutdown()
 
 
 class _AbandonedError(Exception):

@@ -168,9 +168,7 @@ def test_an_answer_is_lines_of_json_that_end_no_script(port):
 
 
 def test_what_has_no_answer_is_said_in_a_line_and_the_next_question_is_answered(port, capfd):
-    assert json.loads(post(port, body=b"refuse")[2]) == {
-        "error": "there is no move at all; give one"
-    }
+    assert json.loads(post(port, body=b"refuse")[2]) == {"error": "no move at all; give one"}
     assert "quietarm has failed" in json.loads(post(port, body=b"fail")[2])["error"]
     assert "RuntimeError: broken" in capfd.readouterr().err
     assert json.loads(post(port)[2])["path"] == "motion"

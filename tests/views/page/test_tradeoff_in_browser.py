@@ -23,6 +23,7 @@ from in_browser import (
 
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, epsilon_front, evaluate_coefficients
+from quietarm.studies.reproduce.paper import paper_points
 from quietarm.views import trade_off
 
 pytestmark = IN_CHROMIUM
@@ -41,7 +42,7 @@ def fronts():
 @pytest.fixture(scope="module")
 def file(fronts, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "front.html"
-    trade_off(fronts).save(path)
+    trade_off(fronts, known_points=paper_points).save(path)
     return path
 
 
