@@ -39,6 +39,7 @@ ROOMS = {
     "studies.figures": "views.pictures",
     "studies.report": "views.report",
     "studies.export": "views",
+    "studies.explore": "views.page",
     "studies.reading": "studies.answers",
     "studies.tips": "views.tips",
 }

@@ -262,7 +262,7 @@ def follow(tmp_path, capfd, monkeypatch, quick_pictures):
 
 
 ELSEWHERE = (STARTED, "explore", "machine", "gallery", "start")
-"""The page of explore stays until Ctrl-C: tests/studies/explore opens it. The gallery's commands
+"""The page of explore stays until Ctrl-C: tests/views/page opens it. The gallery's commands
 make its pictures: test_pictures.py."""
 CALLED = [name for name in COMMAND_BLOCKS if not name.startswith(ELSEWHERE)]
 

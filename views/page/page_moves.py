@@ -134,6 +134,21 @@ def moves_of(answers: Answers, known_points: KnownPoints | None = None) -> list[
     return [_move_of(group, known_points) for group in groups]
 
 
+def move_by_hand(plan: Plan, cycloid: Plan) -> Move:
+    """Show the one motion in hand, over the plain cycloid of its move."""
+    name = "this motion"
+    return Move(
+        label=name,
+        task=plan.task,
+        choices=(Choice(plan, *_place(plan), name=name),),
+        cycloid=cycloid,
+        method=name,
+        joined=False,
+        left_out=0,
+        beside=(),
+    )
+
+
 def _belong_together(first: Front | Plan, answer: Front | Plan) -> bool:
     """Whether F1 and F2 mean the same, and of two fronts the limits are the same, too."""
     tasks = [first.task, answer.task]

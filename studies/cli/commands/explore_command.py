@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from quietarm.ocp.checks import install
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, command, option
 from quietarm.studies.cli.plants import parse_plant
+
+if TYPE_CHECKING:
+    from quietarm.views.page.by_hand import MoveByHand
 
 
 @command(
@@ -29,20 +32,20 @@ def explore(given: Given) -> None:
       quietarm explore dual-link
       quietarm explore plan.json --no-browser
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.studies.explore.start_page import is_file, open_file, open_plant
+    from quietarm.studies.answers.open_by_hand import is_file, open_file
+    from quietarm.studies.reproduce.paper import paper_points
+    from quietarm.views.page.by_hand import open_plant
+    from quietarm.views.page.live_page import LivePage
+    from quietarm.views.page.server import serve
 
-    try:
-        from quietarm.studies.explore.server import serve
-    except ImportError:
-        raise ValueError(f"the page needs bokeh; {install('explore')}") from None
-
-    what = given.what
-    if what is not None and is_file(what):
-        if given.parameters:
-            raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
-        explored = open_file(Path(what))
-    else:
+    def begun() -> MoveByHand:
+        what = given.what
+        if what is not None and is_file(what):
+            if given.parameters:
+                raise ValueError(f"--set is for a PLANT, and {what} has its own; leave it out")
+            return open_file(Path(what))
         of_file = what is None and given.plant_file is not None
         kind = None if of_file else parse_plant(what or "single-link")
-        explored = open_plant(given.read_plant(kind))
-    serve(explored, click.echo, not given.no_browser)
+        return open_plant(given.read_plant(kind))
+
+    serve(LivePage(begun(), paper_points), click.echo, not given.no_browser)
