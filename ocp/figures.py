@@ -17,7 +17,8 @@ from quietarm.interrupts import interruptible
 from quietarm.models import Plant
 from quietarm.models.dimensions import JOULE, TIP, WATT, WAY, Unit, Words
 from quietarm.models.plant_file import note_added
-from quietarm.ocp.checks import instance, quoted, takes, unknown
+from quietarm.ocp.checks import instance, quoted, takes, unknown, words_of_error
+from quietarm.ocp.errors import QuietarmError
 from quietarm.ocp.limits import (
     PAGE,
     PLACES,
@@ -77,6 +78,20 @@ class Figure:
     def __post_init__(self) -> None:
         instance("unit", self.unit, Unit)
         instance("label", self.label, Words)
+
+    def value(self, candidate: Candidate) -> float:
+        """The figure of a motion; ValueError where a function of one's own gives no number."""
+        if self.name not in _added:
+            return self.of(candidate)
+        try:
+            return float(self.of(candidate))
+        except QuietarmError:
+            raise
+        except Exception as error:  # of a function of one's own
+            raise ValueError(
+                f"the figure {self.name!r} fails ({words_of_error(error)}); give a function of a "
+                "Candidate that returns a number"
+            ) from None
 
     def unit_on(self, plant: Plant) -> str:
         """Its unit, of a plant."""
@@ -255,7 +270,7 @@ class Figures(Mapping[str, Any], Ranged):
         if name not in self._values:
             if self.candidate is None:
                 raise KeyError(name)
-            self._values[name] = FIGURES[name].of(self.candidate)
+            self._values[name] = FIGURES[name].value(self.candidate)
         if isinstance(self._values[name], float) and not math.isfinite(self._values[name]):
             raise KeyError(name)
         return self._values[name]

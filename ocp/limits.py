@@ -9,10 +9,11 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.models import Expression, Plant
+from quietarm.models import Expression, Plant, SingleLinkManipulator
 from quietarm.models.dimensions import (
     ACCELERATION,
     EFFORT,
@@ -28,7 +29,7 @@ from quietarm.models.dimensions import (
 from quietarm.models.dimensions import JERK as OF_JERK
 from quietarm.models.joint_motion import MIXED, ROTARY
 from quietarm.models.plant_file import note_added
-from quietarm.ocp.checks import instance, not_negative, quoted, takes
+from quietarm.ocp.checks import instance, not_negative, quoted, takes, words_of_error
 from quietarm.ocp.sample import Sample, symbolic_sample
 
 REPORT = "report"
@@ -206,7 +207,7 @@ def add_quantity(quantity: Quantity) -> Quantity:
     Raises
     ------
     ValueError
-        When the name is taken by quietarm, or is none of Python.
+        When the name is taken by quietarm, or is none of Python, or its function fails.
     """
     name = quantity.name
     if name in _OWN or name in _RESERVED:
@@ -215,9 +216,27 @@ def add_quantity(quantity: Quantity) -> Quantity:
         raise ValueError(
             f"the name of a quantity is {quoted(name)}; give letters, digits and _, as tip_speed"
         )
+    _check_values(quantity)
     _quantities[name] = quantity
     note_added(quantity)
     return quantity
+
+
+def _check_values(quantity: Quantity) -> None:
+    """Refuse a quantity whose function fails, or gives no values; ValueError says where."""
+    try:
+        values = list(quantity.values(symbolic_sample(SingleLinkManipulator())))
+    except Exception as error:  # of a function of one's own
+        raise ValueError(
+            f"the quantity {quantity.name!r} fails for a plant of one joint and one tip "
+            f"({words_of_error(error)}); give a function of a Sample, as "
+            "lambda sample: sample.tip_speeds"
+        ) from None
+    if not values or not all(isinstance(value, ca.SX | float | int) for value in values):
+        raise ValueError(
+            f"the quantity {quantity.name!r} returns {quoted(values)}; give a list of values, as "
+            "sample.tip_speeds"
+        )
 
 
 @takes()

@@ -186,6 +186,29 @@ def test_so_is_a_figures(name):
         add_figure(replace(RMS_TORQUE, name=name))
 
 
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        (lambda sample: sample.tip_jerks, "has no attribute 'tip_jerks'.*as lambda sample"),
+        (lambda sample: [], "returns"),
+        (lambda sample: ["fast"], "returns"),
+    ],
+)
+def test_a_function_that_fails_is_refused_where_it_is_added(values, told):
+    with pytest.raises(ValueError, match=told):
+        add_quantity(replace(TIP_ACCELERATION, values=values))
+
+
+@pytest.mark.parametrize("of", [lambda candidate: "much", lambda candidate: candidate.speed])
+def test_a_figure_that_is_no_number_is_refused_in_a_line(task, of):
+    add_figure(replace(RMS_TORQUE, of=of))
+    try:
+        with pytest.raises(ValueError, match=r"'rms_torque' fails .*; give a function of a"):
+            qa.evaluate_coefficients(task, [])._repr_html_()
+    finally:
+        remove_figure("rms_torque")
+
+
 def test_rates_of_tips_are_those_of_the_equations():
     """The second derivative against differences of the first, which the plant gives itself."""
     plant = TwoLinks()
