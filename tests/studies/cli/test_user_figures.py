@@ -1,16 +1,23 @@
-"""A quantity and a figure of a user's own: the file of docs/extend.md, through commands."""
+"""A quantity and a figure of a user's own beside a plant: those of docs/extend.md, in a file."""
 
 import csv
 import json
 from pathlib import Path
 
 import pytest
-from pages import blocks
+from pages import shown_file
 
 import quietarm as qa
 from quietarm.ocp import remove_figure, remove_quantity
 
-_, FILE = blocks("extend", "python")
+PLANT = """
+import quietarm as qa
+
+
+class Mine(qa.SingleLinkManipulator):
+    name = "mine"
+"""
+FILE = "".join(shown_file("extend", name) for name in ("tip_acceleration.py", "rms_torque.py"))
 MOVE = "mine --plant-file mine.py --target 30deg --duration 1.2 --quiet"
 LIMIT = "--tip-acceleration-limit 2"
 
@@ -18,7 +25,7 @@ LIMIT = "--tip-acceleration-limit 2"
 @pytest.fixture
 def own(folder, request):
     """The file, in the folder of the test; its entries are known in that alone."""
-    text = f"{FILE}\n# {request.node.name}: a file of the same content would not run again\n"
+    text = f"{FILE}{PLANT}\n# {request.node.name}: a file of the same content would not run again\n"
     (folder / "mine.py").write_text(text)
     yield
     remove_quantity("tip_acceleration")
