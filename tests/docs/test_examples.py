@@ -206,7 +206,7 @@ def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 25
+    assert sum(len(blocks(page, "python")) for page in others) == 27
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 

@@ -291,7 +291,8 @@ def test_an_export_format(follow, refused, done):
     code = file_of("An export format")[1]
     Path("gcode.py").write_text(code.replace("plan.sampled", "plan.sample"))
     told = refused(f"export plan.json {own} --output bad.nc")
-    assert "format g-code (gcode.py, line 20) fails: AttributeError" in told
+    line = 1 + next(k for k, text in enumerate(code.splitlines()) if "plan.sampled" in text)
+    assert f"format g-code (gcode.py, line {line}) fails: AttributeError" in told
     assert not Path("bad.nc").exists()
     Path("gcode.py").write_text(code.replace('".gcode"', '".csv"'))
     assert "ending .csv of GCode is that of the format csv" in refused(
@@ -375,7 +376,7 @@ def test_a_limit(follow, refused):
     free = qa.plan_move(LINK, qa.CycloidPolynomial(6))
     assert np.abs(tip_acceleration(free)).max() > 4.2  # so the limit bites
     assert np.abs(tip_acceleration(fastest)).max() == pytest.approx(8, rel=2e-3)
-    assert "tip acceleration 4 m/s^2" in " ".join(Path("move.h").read_text().split())
+    assert "tip acceleration within 4 m/s^2" in Path("move.h").read_text()
     again = qa.PointToPoint(LINK.plant, LINK.target, LINK.duration, tip_acceleration_limit=4.0)
     assert again == plan.task
     move = "single-link --plant-file tip_acceleration.py --target 30deg --duration 0.8"

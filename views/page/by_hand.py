@@ -35,7 +35,7 @@ from quietarm.ocp.planning.named_profiles import families, profile_of
 from quietarm.ocp.task import OF_MOVES
 from quietarm.ocp.window import default_window
 from quietarm.views.formats.formats import export_plan
-from quietarm.views.page.library import Library
+from quietarm.views.page.move_library import Library
 from quietarm.views.report.words import plant_words, raised
 
 FRONT_POINTS = 20

@@ -57,11 +57,10 @@ class ExportCommand(Command):
                 raise click.BadParameter(str(error), ctx=ctx, param_hint=hint) from None
         return super().parse_args(ctx, args)
 
-    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Its own options, those of the formats, and those of all commands."""
-        params = super().get_params(ctx)
-        own = len(self.params)
-        return [*params[:own], _format_option(), *_setting_options(), *params[own:]]
+    @property
+    def own_params(self) -> list[click.Parameter]:
+        """Its own options, and those of the formats."""
+        return [*super().own_params, _format_option(), *_setting_options()]
 
 
 def _format_option() -> click.Option:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from quietarm.ocp import PointToPoint
 
 
-class Axis(Protocol):
+class LibraryAxis(Protocol):
     """One quantity of a grid."""
 
     @property
@@ -29,11 +29,11 @@ class Axis(Protocol):
         ...
 
 
-class Grid(Protocol):
+class LibraryGrid(Protocol):
     """The axes of a library."""
 
     @property
-    def axes(self) -> Sequence[Axis]:
+    def axes(self) -> Sequence[LibraryAxis]:
         """One for each quantity that differs between the moves."""
         ...
 
@@ -47,7 +47,7 @@ class Library(Protocol):
     """Coefficients of every move within a grid."""
 
     @property
-    def grid(self) -> Grid:
+    def grid(self) -> LibraryGrid:
         """The grid."""
         ...
 
