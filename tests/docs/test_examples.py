@@ -205,7 +205,7 @@ def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
 
 
 def test_no_example_is_left_untested():
-    # those of problems are in tests/metaheuristics/problems, the second of extend in tests/studies/cli
+    # problems: tests/metaheuristics/problems; the second of extend: tests/studies/cli
     others = [page for page in PAGES if page != "problems"]
     assert sum(len(blocks(page, "python")) for page in others) == 20
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
