@@ -139,7 +139,7 @@ class Plant(ABC):
     """How many modal amplitudes the plant has."""
 
     joint: ClassVar[str] = ROTARY
-    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`). Of several
+    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`Unit`). Of several
     joints theirs, or mixed; `joint_kinds` has each."""
     tip_unit: ClassVar[str] = "m"
     """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""

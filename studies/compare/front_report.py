@@ -160,10 +160,7 @@ def fronts_report(
     comparisons: Sequence[Comparison],
     known: Sequence[Sequence[KnownPoint]],
 ) -> Report:
-    """Compared fronts of one task or several, with known points of each for its picture.
-
-    Of `unsealed` files it says that nothing vouches for what they say of their effort.
-    """
+    """Compared fronts of one task or several, with known points of each for its picture."""
     names = (
         ["fronts.png"]
         if len(comparisons) == 1
