@@ -290,7 +290,7 @@ def test_an_export_format(follow, refused, done):
     code = file_of("An export format")[1]
     Path("gcode.py").write_text(code.replace("plan.sampled", "plan.sample"))
     told = refused(f"export plan.json {own} --output bad.nc")
-    assert "format g-code (gcode.py, line 20) fails: AttributeError" in told
+    assert "format g-code (gcode.py, line 22) fails: AttributeError" in told
     assert not Path("bad.nc").exists()
     Path("gcode.py").write_text(code.replace('".gcode"', '".csv"'))
     assert "ending .csv of GCode is that of the format csv" in refused(

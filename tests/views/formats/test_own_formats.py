@@ -45,6 +45,10 @@ def test_a_format_in_the_way_of_another_is_refused():
     kind = define(endings=(".c",))
     with pytest.raises(ValueError, match=r"ending \.c of Mine is that of the format c"):
         known_formats()
+    kind.endings = (".mine",)
+    kind.__init__ = lambda self, feed: None
+    with pytest.raises(ValueError, match="Mine needs feed; give each a default"):
+        known_formats()
     kind.name = "csv"
     with pytest.raises(ValueError, match="name 'csv' of Mine is that of quietarm's CsvRows"):
         known_formats()
