@@ -274,6 +274,8 @@ def known_formats() -> Mapping[str, ExportFormat]:
     formats: dict[str, ExportFormat] = {
         name: object_of(kind) for name, kind in known(ExportFormat).items()
     }
+    # whatever was loaded first, quietarm's own stand first, by name
+    formats = dict(sorted(formats.items(), key=lambda entry: (not ships(type(entry[1])), entry[0])))
     owners = dict[str, ExportFormat]()
     for form in formats.values():
         for ending in form.endings:
