@@ -21,7 +21,15 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.evaluation.population import figures_of_motions
 from quietarm.metaheuristics.thinning import MOST_POINTS, thinned
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.checks import failed_in, forgotten_if_refused, known, quoted, ships, takes
+from quietarm.ocp.checks import (
+    failed_in,
+    forgotten_if_refused,
+    known,
+    object_of,
+    quoted,
+    ships,
+    takes,
+)
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
@@ -134,6 +142,10 @@ class Indicator(ABC):
                     f"name of the indicator {cls.__name__} is {quoted(name)}; give letters, digits "
                     "and _, which head a column"
                 )
+            if cls.value is Indicator.value:
+                raise ValueError(
+                    f"indicator {name} measures nothing; define value(self, points, scale)"
+                )
         if "label" not in vars(cls):
             cls.label = name.replace("_", " ")
         if "meaning" not in vars(cls):
@@ -225,7 +237,7 @@ def __getattr__(name: str) -> Any:
 @cache
 def _indicator_of(kind: type[Indicator]) -> Indicator:
     """Return the only object of a class."""
-    return kind()
+    return object_of(kind)
 
 
 HYPERVOLUME = _indicator_of(Hypervolume)

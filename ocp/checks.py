@@ -60,6 +60,7 @@ __all__ = [
     "nearest_name",
     "not_negative",
     "numbers",
+    "object_of",
     "positive",
     "quoted",
     "several",
@@ -149,6 +150,13 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
 def _construction(kind: type[Any]) -> str:
     """How an object of a class is made, with the arguments that it needs."""
     return f"{kind.__name__}({', '.join(_needed(kind))})"
+
+
+def object_of(kind: Any) -> Any:
+    """Make an object of a class without arguments; ValueError if it needs some."""
+    if needed := _needed(kind):
+        raise ValueError(f"{kind.__name__} needs {', '.join(needed)}; give each a default")
+    return kind()
 
 
 def _needed(kind: type[Any]) -> list[str]:

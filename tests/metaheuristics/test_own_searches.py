@@ -64,5 +64,7 @@ def test_a_search_that_asks_for_nothing_is_refused():
 def test_an_indicator_needs_a_name_that_heads_a_column():
     with pytest.raises(ValueError, match="name of the indicator Mine is 'my own'; give letters"):
         type("Mine", (qa.Indicator,), {"name": "my own"})
+    with pytest.raises(ValueError, match=r"indicator mine measures nothing; define value\(self"):
+        type("Mine", (qa.Indicator,), {"name": "mine"})
     with pytest.raises(AttributeError, match=r"INDICATORS is gone; give known_indicators\(\)"):
         __import__("quietarm.metaheuristics.score", fromlist=["x"]).INDICATORS  # noqa: B018

@@ -18,6 +18,7 @@ from quietarm.ocp.checks import (
     forgotten_if_refused,
     known,
     listed,
+    object_of,
     quoted,
     ships,
     unknown,
@@ -270,7 +271,11 @@ def known_formats() -> Mapping[str, ExportFormat]:
     """
     for module in iter_modules([str(Path(__file__).parent)]):
         import_module(f"{__package__}.{module.name}")
-    formats = {name: kind() for name, kind in known(ExportFormat).items()}
+    formats: dict[str, ExportFormat] = {
+        name: object_of(kind) for name, kind in known(ExportFormat).items()
+    }
+    # whatever was loaded first, quietarm's own stand first, by name
+    formats = dict(sorted(formats.items(), key=lambda entry: (not ships(type(entry[1])), entry[0])))
     owners = dict[str, ExportFormat]()
     for form in formats.values():
         for ending in form.endings:

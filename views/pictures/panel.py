@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import Floor, Plan
-from quietarm.ocp.checks import failed_in, forgotten_if_refused, known, quoted
+from quietarm.ocp.checks import failed_in, forgotten_if_refused, known, object_of, quoted
 
 Array = NDArray[np.float64]
 
@@ -40,6 +40,8 @@ class Panel(ABC):
                 raise ValueError(
                     f"panel {cls.name} has no title; give one, as title = 'bending moment [N m]'"
                 )
+            if named and cls.values is Panel.values:
+                raise ValueError(f"panel {cls.name} draws nothing; define values(self, motion)")
 
     @abstractmethod
     def values(self, motion: Plan | Floor) -> Any:
@@ -73,7 +75,7 @@ class Panel(ABC):
 
 def known_panels(shipped: tuple[str, ...]) -> dict[str, Panel]:
     """Return the user's panels by name; ValueError if one has the name of a shipped quantity."""
-    panels = {name: kind() for name, kind in known(Panel).items()}
+    panels: dict[str, Panel] = {name: object_of(kind) for name, kind in known(Panel).items()}
     for name, panel in panels.items():
         if name in shipped:
             raise ValueError(

@@ -45,6 +45,10 @@ def test_a_format_in_the_way_of_another_is_refused():
     kind = define(endings=(".c",))
     with pytest.raises(ValueError, match=r"ending \.c of Mine is that of the format c"):
         known_formats()
+    kind.endings = (".mine",)
+    kind.__init__ = lambda self, feed: None
+    with pytest.raises(ValueError, match="Mine needs feed; give each a default"):
+        known_formats()
     kind.name = "csv"
     with pytest.raises(ValueError, match="name 'csv' of Mine is that of quietarm's CsvRows"):
         known_formats()
@@ -72,3 +76,9 @@ def test_what_a_format_returns_is_checked(cycloid, tmp_path):
     with pytest.raises(ValueError, match=r"format mine .*fails: KeyError: 'a'; mend it"):
         export_plan(cycloid, tmp_path / "move.mine")
     assert not list(tmp_path.iterdir())
+
+
+def test_the_order_of_formats_does_not_depend_on_what_was_loaded_first():
+    kind = define(name="a")
+    names = list(known_formats())
+    assert names == ["c", "csv", "gif", "html", "mat", "mp4", "ros", kind.name]

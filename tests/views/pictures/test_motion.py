@@ -179,6 +179,8 @@ def test_a_panel_of_the_users_is_checked(task, what_is_made_up_is_forgotten):
     plan = evaluate_coefficients(task, [])
     with pytest.raises(ValueError, match="panel mine has no title; give one, as title = "):
         type("Mine", (Panel,), {"name": "mine"})
+    with pytest.raises(ValueError, match=r"panel mine draws nothing; define values\(self"):
+        type("Mine", (Panel,), {"name": "mine", "title": "a"})
     with pytest.raises(ValueError, match="unknown quantity 'mine'"):
         draw_quantity(plan, "mine")
     mine = {"name": "mine", "title": "a", "values": lambda self, motion: [1.0]}
