@@ -46,6 +46,7 @@ const frontOf = (about) => (traced.front && traced.key === keyOf(about) ? traced
 // Motions: while one is computed only the latest question waits.
 let waiting = null;
 let isAsking = false;
+const SOON = 400; // milliseconds, after which a visitor wonders
 const askMotion = async (next) => {
   question = next;
   waiting = next;
@@ -54,7 +55,9 @@ const askMotion = async (next) => {
   while (waiting) {
     const about = waiting;
     waiting = null;
+    const takesLong = setTimeout(() => tell("computing ..."), SOON);
     const answer = await ask("motion", about);
+    clearTimeout(takesLong);
     if (answer.error) tell(answer.error, true);
     else showAnswer(answer, about);
   }
