@@ -46,6 +46,7 @@ const frontOf = (about) => (traced.front && traced.key === keyOf(about) ? traced
 // Motions: while one is computed only the latest question waits.
 let waiting = null;
 let isAsking = false;
+const SOON = 400; // milliseconds, after which a visitor wonders
 const askMotion = async (next) => {
   question = next;
   waiting = next;
@@ -54,7 +55,9 @@ const askMotion = async (next) => {
   while (waiting) {
     const about = waiting;
     waiting = null;
+    const takesLong = setTimeout(() => tell("computing ..."), SOON);
     const answer = await ask("motion", about);
+    clearTimeout(takesLong);
     if (answer.error) tell(answer.error, true);
     else showAnswer(answer, about);
   }
@@ -67,7 +70,7 @@ const showAnswer = ({ move, fields: next, warning }, about) => {
   enter(unpackMove(move));
   settings = next;
   if (!waiting) showFields(about); // unless something else was set meanwhile
-  byId("more").classList.add("stale");
+  noteStale(true);
   tell(warning);
 };
 let shownOf = "";
@@ -156,6 +159,7 @@ const askAtRest = () => {
     const answer = await ask("robustness", about);
     if (isOld()) return;
     robustness.now = answer.robustness ?? null;
+    noteStale(false);
     drawRobustness();
   }, AT_REST);
 };
@@ -169,11 +173,12 @@ const showRows = (rows) => {
   }
   byId("more").classList.remove("stale");
 };
+const noteStale = (is) => [byId("more"), robustness.svg].forEach(({ classList }) => classList.toggle("stale", is));
 // A point of the front: its motion is here already.
 onChoice = (point) => {
   question = { ...question, optimal: false, point };
   traced.front.coefficients[point].forEach((value, k) => show(fields.get(`a${k + 1}`), value));
-  byId("more").classList.add("stale");
+  noteStale(true);
   tell("");
   askAtRest();
 };

@@ -62,6 +62,7 @@ def opened(open_page, address):
     def at(**options):
         page = open_page(address, **{**CALM, **options})
         has(page, "move", "single-link, 0 to 30 deg in 0.8 s")
+        becomes(page, "robustness.now !== null")
         return page
 
     return at
