@@ -39,7 +39,7 @@ ROOMS = {
     "studies.figures": "views.pictures",
     "studies.report": "views.report",
     "studies.export": "views",
-    "studies.explore": "views.page",
+    "studies.explore": "views.explore",
     "studies.reading": "studies.answers",
     "studies.tips": "views.tips",
 }

@@ -8,7 +8,7 @@ from quietarm.ocp import Front
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.studies.answers.read_answers import format_of, load_front, load_plans
 from quietarm.studies.sweep.library import MoveLibrary
-from quietarm.views.page.by_hand import MoveByHand
+from quietarm.views.explore.by_hand import MoveByHand
 
 
 def open_file(path: Path) -> MoveByHand:

@@ -12,7 +12,7 @@ from quietarm.studies.cli.options import SET, command, option
 from quietarm.studies.cli.plants import parse_plant
 
 if TYPE_CHECKING:
-    from quietarm.views.page.by_hand import MoveByHand
+    from quietarm.views.explore.by_hand import MoveByHand
 
 
 @command(
@@ -34,9 +34,9 @@ def explore(given: Given) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.studies.answers.open_by_hand import is_file, open_file
     from quietarm.studies.reproduce.paper import paper_points
-    from quietarm.views.page.by_hand import open_plant
-    from quietarm.views.page.live_page import LivePage
-    from quietarm.views.page.server import serve
+    from quietarm.views.explore.by_hand import open_plant
+    from quietarm.views.explore.live_page import LivePage
+    from quietarm.views.explore.server import serve
 
     def begun() -> MoveByHand:
         what = given.what

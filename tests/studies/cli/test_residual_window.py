@@ -15,7 +15,7 @@ from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
 from quietarm.studies.answers.open_by_hand import open_file
 from quietarm.studies.compare import compare_plans
 from quietarm.studies.sweep.move_grid import Axis, MoveGrid
-from quietarm.views.page.by_hand import MoveByHand, open_plant
+from quietarm.views.explore.by_hand import MoveByHand, open_plant
 
 CRANE = "linear-axis --set omega1=0.6283 --set zeta1=0.002 --target 8 --duration 16 --quiet"
 WITHIN = "within 20 s"  # two periods of 0.6283 rad/s

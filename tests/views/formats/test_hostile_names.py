@@ -21,8 +21,8 @@ import quietarm as qa
 from quietarm.models.robot.urdf.read_urdf import read_urdf
 from quietarm.ocp.escapes import c_comment, csv_table, markdown, one_line, printable, script_json
 from quietarm.views import export_plan
-from quietarm.views.page.by_hand import MoveByHand
-from quietarm.views.page.live_page import LivePage
+from quietarm.views.explore.by_hand import MoveByHand
+from quietarm.views.explore.live_page import LivePage
 from quietarm.views.page.trade_off import trade_off
 from quietarm.views.report import Report, show, show_facts
 from quietarm.views.report.plan_rows import plan_rows

@@ -18,8 +18,8 @@ from quietarm.ocp import (
     evaluate_coefficients,
 )
 from quietarm.studies.reproduce.paper import paper_points
-from quietarm.views.page.by_hand import MoveByHand, open_plant
-from quietarm.views.page.live_page import QUANTITIES, LivePage
+from quietarm.views.explore.by_hand import MoveByHand, open_plant
+from quietarm.views.explore.live_page import QUANTITIES, LivePage
 from quietarm.views.page.samples import unpacked
 from quietarm.views.page.trade_off import trade_off
 

@@ -25,9 +25,9 @@ from in_browser import (
 
 import quietarm as qa
 from quietarm.ocp.escapes import one_line
-from quietarm.views.page.by_hand import MoveByHand
-from quietarm.views.page.live_page import LivePage
-from quietarm.views.page.server import Desk, Listener
+from quietarm.views.explore.by_hand import MoveByHand
+from quietarm.views.explore.live_page import LivePage
+from quietarm.views.explore.server import Desk, Listener
 
 pytestmark = IN_CHROMIUM
 CALM = {"reduced_motion": "reduce"}

@@ -34,8 +34,8 @@ from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.planning.named_profiles import families, profile_of
 from quietarm.ocp.task import OF_MOVES
 from quietarm.ocp.window import default_window
+from quietarm.views.explore.move_library import Library
 from quietarm.views.formats.formats import export_plan
-from quietarm.views.page.move_library import Library
 from quietarm.views.report.words import plant_words, raised
 
 FRONT_POINTS = 20

@@ -20,7 +20,14 @@ from quietarm.ocp import Front, Plan, evaluate_coefficients, evaluate_robustness
 from quietarm.ocp.front.tradeoff import Progress, no_report
 from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.uncertainty import FREQUENCY, check_ranges
-from quietarm.views.page.by_hand import FILES, MoveByHand, Question, menu, plain_of, words_of_plant
+from quietarm.views.explore.by_hand import (
+    FILES,
+    MoveByHand,
+    Question,
+    menu,
+    plain_of,
+    words_of_plant,
+)
 from quietarm.views.page.page_moves import KnownPoints, Move, move_by_hand, moves_of
 from quietarm.views.page.trade_off import colour_name, page_html, shown_move
 from quietarm.views.pictures.grammar import looks

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from quietarm.views.page.server import Desk, Listener
+from quietarm.views.explore.server import Desk, Listener
 
 GUARD = 240
 """Seconds after which what does not come has hung, on any machine."""

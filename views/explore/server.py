@@ -25,7 +25,7 @@ from typing import Any
 
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.escapes import one_line, script_json
-from quietarm.views.page.live_page import LivePage
+from quietarm.views.explore.live_page import LivePage
 
 _NAMES = ("localhost", "127.0.0.1", "[::1]")
 """What this machine is called in a browser. A name of the network that leads here belongs to a

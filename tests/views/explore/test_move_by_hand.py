@@ -17,7 +17,7 @@ from quietarm.ocp import (
 from quietarm.studies.answers.open_by_hand import open_file
 from quietarm.studies.cli import main
 from quietarm.studies.sweep.library import MoveLibrary
-from quietarm.views.page.by_hand import MoveByHand, Question, menu, open_plant
+from quietarm.views.explore.by_hand import MoveByHand, Question, menu, open_plant
 
 LINK = SingleLinkManipulator()
 TASK = PointToPoint(LINK, math.pi / 6, 0.8)
