@@ -108,7 +108,11 @@ class SearchMethod(ABC):
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
             return float(value)
         if not fits or not isinstance(value, float | int | str):
-            words = {float: "a number", int: "a whole number", bool: "true or false"}
+            words: dict[type, str] = {
+                float: "a number",
+                int: "a whole number",
+                bool: "true or false",
+            }
             raise ValueError(f"{name} is {value!r}; give {words.get(kind, 'a word')}")
         return value
 
