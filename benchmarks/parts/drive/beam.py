@@ -88,7 +88,7 @@ class Beam:
         return np.sqrt(squares), shapes
 
     def reduced(self, count: int, damping: tuple[float, ...]) -> tuple[np.ndarray, ...]:
-        """Mass, damping and stiffness matrix of the carriage's place and `count` modes, and the tool.
+        """Mass, damping and stiffness by the carriage's place and `count` modes, and the tool.
 
         The tool's displacement in space is the last array times these coordinates.
         """

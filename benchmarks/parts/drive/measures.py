@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,12 +48,15 @@ class Outcome:
 
 
 def outcomes(
-    runs: Runs, machines: list[Machine], set_points: list[SetPoints], band: float = 1e-4
+    runs: Runs,
+    machines: Sequence[Machine],
+    set_points: Sequence[SetPoints],
+    bands: Sequence[float],
 ) -> list[Outcome]:
-    """Measure every case of the runs; `band` is the distance from the target within which it acts."""
+    """Measure every case of the runs, each with the distance from its target at which it acts."""
     return [
         _outcome(runs, case, machine, asked, band)
-        for case, (machine, asked) in enumerate(zip(machines, set_points))
+        for case, (machine, asked, band) in enumerate(zip(machines, set_points, bands))
     ]
 
 

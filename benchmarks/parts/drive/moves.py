@@ -127,7 +127,7 @@ MOVES = {
 
 
 def plan(task: PointToPoint, residual_limit: float | None = None) -> SetPoints:
-    """quietarm's plan of a task as its set points; a task with errors takes a limit [m]."""
+    """Plan a task with quietarm; a task with errors takes a residual limit [m]."""
     candidate = plan_move(task, residual_limit=residual_limit).candidate
     time = _rows(task.duration)
     motion = candidate.sample(np.minimum(time, task.duration)).motion
@@ -135,7 +135,7 @@ def plan(task: PointToPoint, residual_limit: float | None = None) -> SetPoints:
 
 
 def shaper_over_ruckig(task: PointToPoint, shaper: str = "") -> SetPoints:
-    """ruckig's move through an input shaper, in the task's duration; without one ruckig's alone."""
+    """Shape the move of ruckig to last as long as the task; without a shaper it stays as it is."""
     if not shaper:
         return _of_free_motion(ruckig_motion(task))
     impulses = SHAPERS[shaper](task.plant.omega1, task.plant.zeta1)

@@ -27,7 +27,7 @@ _SWEEPS = 3
 
 @dataclass(frozen=True)
 class SetPoints:
-    """What a controller is given: rows of time [s], place [m], speed [m/s], acceleration [m/s^2]."""
+    """Rows for a controller: time [s], place [m], speed [m/s] and acceleration [m/s^2]."""
 
     time: np.ndarray
     place: np.ndarray
