@@ -19,8 +19,6 @@ from .simulate import SetPoints
 
 RATE = 1000
 """Set points in a second."""
-RANGE = 0.05
-"""Error of the frequency for which robust plans are made."""
 
 
 @dataclass(frozen=True)
