@@ -1,5 +1,6 @@
 """benchmarks/real_drive.py: the physics of its simulator, and the tables of docs/drive.md."""
 
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -50,6 +51,12 @@ def pushed(machine, force):
     count = len(force)
     rest = count / TICKS - 0.1
     return simulate([machine], [still()], rest=rest, push=np.asarray(force)[:, None])
+
+
+@pytest.mark.parametrize("name", ["beam", "machines", "simulate", "measures"])
+def test_the_simulator_shares_no_equation_with_quietarm(name):
+    text = (ROOT / "benchmarks" / "parts" / "drive" / f"{name}.py").read_text()
+    assert re.findall(r"^\s*(?:from|import) (quietarm|casadi|\.moves)", text, re.MULTILINE) == []
 
 
 # The structure
