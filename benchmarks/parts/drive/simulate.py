@@ -172,6 +172,75 @@ class _Controllers:
         return sent
 
 
+class _Plants:
+    """The structures, belts and guides of all cases, a step at a time."""
+
+    def __init__(self, machines: Sequence[Machine], steps: int, start: np.ndarray) -> None:
+        models = [_step(machine, steps) for machine in machines]
+        self._free = np.stack([model.free for model in models])
+        self._by_friction = np.stack([model.friction for model in models])
+        self._tools = np.stack([model.tool for model in models])
+        self._n = self._tools.shape[1]
+        self._bodies = list(models[0].bodies)
+        self._speeds = [self._n + body for body in self._bodies]
+        self._gains = self._by_friction[:, self._speeds, :]
+        rubbing = [_rubbing(machine) for machine in machines]
+        self._sliding = np.array([[body.sliding for body in each] for each in rubbing])
+        breakaway = np.array([[body.breakaway for body in each] for each in rubbing])
+        self._extra = breakaway - self._sliding
+        self._stribeck = np.array([[body.stribeck for body in each] for each in rubbing])
+        self._half_play = np.array([machine.backlash / 2 for machine in machines])
+        self._belt = np.array([machine.belt or 0.0 for machine in machines])
+        self._belt_damping = np.array([machine.belt_damping for machine in machines])
+        self._with_play = bool(self._half_play.any())
+        self._rubs = np.zeros((len(machines), len(self._bodies)))
+        # state, force of the motor, push at the tool, force of the play
+        self._full = np.zeros((len(machines), 2 * self._n + 3))
+        self.state = self._full[:, : 2 * self._n]
+        self.state[:, : len(self._bodies)] = start[:, None]
+
+    @property
+    def motor(self) -> np.ndarray:
+        """Places of the motors."""
+        return self.state[:, 0]
+
+    @property
+    def tool(self) -> np.ndarray:
+        """Places of the tools in space."""
+        return np.einsum("ij,ij->i", self.state[:, : self._n], self._tools)
+
+    def hold(self, force: np.ndarray, push: np.ndarray | float) -> None:
+        """Set the forces of motor and push until they are set anew."""
+        self._full[:, 2 * self._n] = force
+        self._full[:, 2 * self._n + 1] = push
+
+    def march(self) -> np.ndarray:
+        """Go a step on; the work of dry friction within it, by case."""
+        if self._with_play:
+            self._full[:, 2 * self._n + 2] = self._play()
+        now = self.state[:, self._speeds]
+        places = self.state[:, self._bodies]
+        following = np.matmul(self._free, self._full[:, :, None])[:, :, 0]
+        free = following[:, self._speeds]
+        halfway = (now + free + (self._gains @ self._rubs[:, :, None])[:, :, 0]) / 2
+        most = self._sliding + self._extra * np.exp(-((halfway / self._stribeck) ** 2))
+        self._rubs = _rub(free, self._gains, most, self._rubs)
+        self.state[:] = following + (self._by_friction @ self._rubs[:, :, None])[:, :, 0]
+        return (self._rubs * (self.state[:, self._bodies] - places)).sum(axis=1)
+
+    def _play(self) -> np.ndarray:
+        """Force that takes back what the belt's spring and damper would do within their play."""
+        half = self._half_play
+        stretch = self.state[:, 0] - self.state[:, 1]
+        rate = self.state[:, self._n] - self.state[:, self._n + 1]
+        damper = self._belt_damping * rate
+        linear = self._belt * stretch + damper
+        beyond = stretch - np.clip(stretch, -half, half)
+        pulls = self._belt * beyond + np.where(beyond != 0, damper, 0.0)
+        pulls = np.where(pulls * beyond > 0, pulls, 0.0)
+        return np.where(half > 0, linear - pulls, 0.0)
+
+
 def simulate(
     machines: Sequence[Machine],
     set_points: Sequence[SetPoints],
@@ -196,53 +265,21 @@ def simulate(
     count = round((max(each.duration for each in set_points) + rest) * TICKS)
     begins = np.arange(count) / TICKS
     asked = [np.column_stack(each) for each in zip(*(each.at(begins) for each in set_points))]
-    models = [_step(machine, steps) for machine in machines]
-    free = np.stack([model.free for model in models])
-    by_friction = np.stack([model.friction for model in models])
-    tools = np.stack([model.tool for model in models])
-    cases, n = tools.shape
-    bodies = list(models[0].bodies)
-    speeds = [n + body for body in bodies]
-    gains = by_friction[:, speeds, :]
-    rubbing = [_rubbing(machine) for machine in machines]
-    sliding = np.array([[body.sliding for body in each] for each in rubbing])
-    extra = np.array([[body.breakaway - body.sliding for body in each] for each in rubbing])
-    stribeck = np.array([[body.stribeck for body in each] for each in rubbing])
-    half_play = np.array([machine.backlash / 2 for machine in machines])
-    belt = np.array([machine.belt or 0.0 for machine in machines])
-    belt_damping = np.array([machine.belt_damping for machine in machines])
-    with_play = bool(half_play.any())
-
-    full = np.zeros((cases, 2 * n + 3))
-    state = full[:, : 2 * n]
     start = np.array([each.place[0] for each in set_points])
-    state[:, : len(bodies)] = start[:, None]
-    servos = _Controllers(machines, state[:, 0])
-    rubs = np.zeros((cases, len(bodies)))
-    tool, motor, force, work, lost = (np.zeros((count, cases)) for _ in range(5))
+    plants = _Plants(machines, steps, start)
+    servos = _Controllers(machines, start)
+    tool, motor, force, work, lost = (np.zeros((count, len(machines))) for _ in range(5))
     for tick in range(count):
-        sent = servos.force(state[:, 0], *(each[tick] for each in asked))
-        full[:, 2 * n] = sent
-        if push is not None:
-            full[:, 2 * n + 1] = push[tick]
-        begun = state[:, 0].copy()
+        sent = servos.force(plants.motor, *(each[tick] for each in asked))
+        plants.hold(sent, 0.0 if push is None else push[tick])
+        begun = plants.motor.copy()
         for _ in range(steps):
-            if with_play:
-                full[:, 2 * n + 2] = _play(state, n, half_play, belt, belt_damping)
-            now = state[:, speeds]
-            places = state[:, bodies]
-            following = np.matmul(free, full[:, :, None])[:, :, 0]
-            free_speeds = following[:, speeds]
-            halfway = (now + free_speeds + (gains @ rubs[:, :, None])[:, :, 0]) / 2
-            most = sliding + extra * np.exp(-((halfway / stribeck) ** 2))
-            rubs = _rub(free_speeds, gains, most, rubs)
-            state[:] = following + (by_friction @ rubs[:, :, None])[:, :, 0]
-            lost[tick] += (rubs * (state[:, bodies] - places)).sum(axis=1)
-        tool[tick] = np.einsum("ij,ij->i", state[:, :n], tools)
-        motor[tick] = state[:, 0]
+            lost[tick] += plants.march()
+        tool[tick] = plants.tool
+        motor[tick] = plants.motor
         force[tick] = sent
-        work[tick] = sent * (state[:, 0] - begun)
-    return Runs(begins + 1 / TICKS, tool, motor, asked[0], force, work, lost, state.copy())
+        work[tick] = sent * (plants.motor - begun)
+    return Runs(begins + 1 / TICKS, tool, motor, asked[0], force, work, lost, plants.state.copy())
 
 
 def _rub(speeds, gains, most, guess) -> np.ndarray:
@@ -258,14 +295,3 @@ def _rub(speeds, gains, most, guess) -> np.ndarray:
             -(speeds[:, 1] + gains[:, 1, 0] * one) / gains[:, 1, 1], -most[:, 1], most[:, 1]
         )
     return np.column_stack([one, two])
-
-
-def _play(state, n, half, belt, damping) -> np.ndarray:
-    """Force that takes back what the belt's spring and damper would do within their play."""
-    stretch = state[:, 0] - state[:, 1]
-    rate = state[:, n] - state[:, n + 1]
-    linear = belt * stretch + damping * rate
-    beyond = stretch - np.clip(stretch, -half, half)
-    pulls = belt * beyond + np.where(beyond != 0, damping * rate, 0.0)
-    pulls = np.where(pulls * beyond > 0, pulls, 0.0)
-    return np.where(half > 0, linear - pulls, 0.0)
