@@ -232,7 +232,8 @@ def test_a_third_of_the_band_is_the_least_margin_that_always_holds(runs, machine
             assert runs.used(machine, way, band, 3) < 0.9
             assert runs.used(machine, way, band, 1) > 1
     assert max(runs.used(each, "on the way", 0.05, 2) for each in MOVES) > 1
-    assert len(runs.quiet(machine, 1)) < len(runs.quiet(machine, 2)) < len(runs.quiet(machine, 3))
+    assert len(runs.quiet(machine, 1)) == 0
+    assert len(runs.quiet(machine, 2)) < len(runs.quiet(machine, 3))
 
 
 @BOTH
@@ -248,16 +249,18 @@ def test_a_recording_on_the_way_is_the_best_for_a_plan_without_an_error(runs, ma
 
 def test_the_last_sentences_of_the_margin_are_those_of_the_runs(runs):
     extra = set(runs.quiet("gantry", None)) - set(runs.quiet("gantry", 3))
-    assert extra == {"servo 150", "servo 20"}
+    assert extra == {"servo 20"}
     for machine in MOVES:
         for way in ("on the way", "brake"):
             assert runs.used(machine, way, 0.5, 2) < 1
 
 
 @BOTH
-def test_every_motion_leaves_the_band_where_the_servo_hunts(runs, machine):
-    hunting = {"dead time": "8", "encoder": "5e-05", "backlash": "0.0002"}
-    for study, value in hunting.items():
+def test_every_motion_leaves_the_band_where_the_drive_is_bad(runs, machine):
+    leaving = {"dead time": "8", "encoder": "5e-05", "backlash": "0.0002"}
+    for study, value in leaving.items():
+        if study != "backlash":
+            assert runs.hunts(machine, study, value)
         rows = runs.where(machine=machine, study=study, value=value)
         assert not any(row.stays for row in rows)
 

@@ -14,6 +14,8 @@ RESULTS = ROOT / "benchmarks" / "results" / "real_drive.csv"
 PAGE = ROOT / "docs" / "drive.md"
 TEMPLATE = Path(__file__).with_name("page.md")
 MACHINES = ("gantry", "picker")
+LARGEST = {"gantry": 900.0, "picker": 180.0}
+"""Forces at which the drives saturate [N]."""
 MOTIONS = ("nominal", "robust", "robust, sooner", "robust to 10 %", "ZV", "ZVD")
 NAMES = {
     "nominal": "plan without an error",
@@ -140,10 +142,23 @@ class Runs:
         )
         return max(row.farthest_mm for row in rows) / band
 
-    def drives(self, machine: str) -> list[str]:
-        """The drives on which the margins were tried."""
+    def hunts(self, machine: str, study: str, value: str) -> bool:
+        """Whether a servo shakes its axis with its largest force, whatever the motion."""
+        rows = self.where(machine=machine, study=study, value=value)
+        return all(row.peak_force_n >= LARGEST[machine] for row in rows)
+
+    def drives(self, machine: str, *, hunting: bool = False) -> list[str]:
+        """The drives on which the margins were tried: those that are calm, or that hunt."""
         rows = self.where(machine=machine, study="every drive")
-        return list(dict.fromkeys(row.value for row in rows))
+        return [
+            drive
+            for drive in dict.fromkeys(row.value for row in rows)
+            if self.hunts(machine, "every drive", drive) is hunting
+        ]
+
+    def hunting_words(self, machine: str) -> str:
+        """The drives that hunt, in words."""
+        return listed(map(described, self.drives(machine, hunting=True)))
 
     def quiet(self, machine: str, margin: int | None) -> list[str]:
         """Drives whose tool stays within the band at every error; without a margin by ZVD."""
@@ -246,6 +261,8 @@ class Runs:
             for value in dict.fromkeys(row.value for row in found):
                 by_motion = {row.motion: row for row in found if row.value == value}
                 name = words.format(f"{float(value) * unit:.3g}")
+                if self.hunts(machine, study, value):
+                    name += ", hunts"
                 rows.append([name, *(cell(by_motion.get(motion)) for motion in shown)])
         return table(("property", *(NAMES[motion] for motion in shown)), rows)
 
@@ -262,7 +279,7 @@ class Runs:
 
     def table_of_drives(self) -> str:
         """On how many drives the tool stays within the band at every error."""
-        head = ("machine", "drives", "limit: band", "band / 2", "band / 3", "band / 5", "ZVD")
+        head = ("machine", "calm drives", "limit: band", "band / 2", "band / 3", "band / 5", "ZVD")
         rows = list[list[str]]()
         for machine in MACHINES:
             counts = [len(self.quiet(machine, margin)) for margin in (1, 2, 3, 5, None)]
