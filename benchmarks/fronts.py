@@ -34,10 +34,9 @@ from parts.measuring import console, forget_compiled, load_plugins, machine, tim
 from rich.table import Table
 
 from quietarm.metaheuristics import SearchProgress, search
-from quietarm.metaheuristics.score import objectives
+from quietarm.metaheuristics.score import filled, objectives
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, Front, PointToPoint, epsilon_front, plan_move
-from quietarm.studies.compare.staircase import filled
 
 PROFILE = CycloidPolynomial(6)
 CASES = {

@@ -15,13 +15,14 @@ def attach(
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], Any]:
     """What `lazy_loader.attach_stub` gives: `__getattr__`, `__dir__` and `__all__` of a package.
 
-    AttributeError of a name that has moved says where to.
+    ImportError of a name that has moved says where to: an AttributeError would lose its words in
+    ``from quietarm import name``.
     """
     load, listed, names = lazy_loader.attach_stub(package, file)
 
     def load_or_say(name: str) -> Any:
         if moved and name in moved:
-            raise AttributeError(f"{package}.{name} has moved to {package}.{moved[name]}")
+            raise ImportError(f"{package}.{name} has moved to {moved[name]}", name=name)
         return load(name)
 
     return interruptible(load_or_say), listed, names

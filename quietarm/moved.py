@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from types import ModuleType
 
-MOVED = {"figures": "pictures"}
+MOVED = {"figures": "quietarm.pictures"}
 """Names of `qa`."""
 MOVED_WITHIN = {
-    "models": {"joint_unit": "Unit"},
-    "ocp": {"Motion": "Figures"},
-    "pictures": {"QUANTITIES_DRAWN": "drawn_quantities"},
+    "models": {"joint_unit": "quietarm.models.dimensions.WAY.of(kind)"},
+    "ocp": {"Motion": "quietarm.ocp.Figures"},
+    "pictures": {"QUANTITIES_DRAWN": "quietarm.pictures.drawn_quantities()"},
+    "studies": {
+        "figures": "quietarm.views.pictures",
+        "identify": "quietarm.machine.identify",
+        "export": "quietarm.views",
+    },
 }
 """Names of its packages."""
 
@@ -41,6 +46,14 @@ ROOMS = {
     "studies.export": "views",
     "studies.explore": "views.explore",
     "studies.reading": "studies.answers",
+    "studies.sweep.grid": "studies.sweep.move_grid",
+    "studies.sweep.cells": "studies.sweep.grid_cells",
+    "studies.sweep.interpolation": "studies.sweep.cell_interpolation",
+    "studies.reproduce.report": "studies.reproduce.paper_report",
+    "studies.bench.page": "studies.bench.bench_page",
+    "studies.bench.figures": "studies.bench.bench_pictures",
+    "ocp.planning.setup": "ocp.planning.request",
+    "ocp.front.curve": "ocp.front.tradeoff",
     "studies.tips": "views.tips",
 }
 

@@ -5,5 +5,6 @@ after, and `answers` reads files. All of them may import the other packages.
 """
 
 from quietarm.loading import attach
+from quietarm.moved import MOVED_WITHIN
 
-__getattr__, __dir__, __all__ = attach(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__, MOVED_WITHIN["studies"])

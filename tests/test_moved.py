@@ -9,26 +9,33 @@ from quietarm.moved import ROOMS, MovedRooms
 
 
 def test_a_name_that_has_moved_says_where_it_is():
-    with pytest.raises(AttributeError, match=r"quietarm\.figures has moved to quietarm\.pictures"):
+    with pytest.raises(ImportError, match=r"quietarm\.figures has moved to quietarm\.pictures"):
         qa.figures.draw_fronts([])
 
 
 def test_a_class_that_has_another_name_says_it():
-    with pytest.raises(AttributeError, match=r"ocp\.Motion has moved to .*ocp\.Figures"):
+    with pytest.raises(ImportError, match=r"ocp\.Motion has moved to .*ocp\.Figures"):
         _ = qa.ocp.Motion
 
 
 @pytest.mark.parametrize(
     ("package", "name", "now"),
     [
-        ("models", "joint_unit", "models.Unit"),
+        ("models", "joint_unit", "models.dimensions.WAY.of"),
         ("ocp", "Motion", "ocp.Figures"),
         ("pictures", "QUANTITIES_DRAWN", "pictures.drawn_quantities"),
+        ("studies", "export", "views"),
+        ("studies", "identify", "machine.identify"),
     ],
 )
 def test_so_does_a_name_of_a_package(package, name, now):
-    with pytest.raises(AttributeError, match=rf"{name} has moved to quietarm\.(views\.)?{now}$"):
+    with pytest.raises(ImportError, match=rf"{name} has moved to quietarm\.(views\.)?{now}"):
         getattr(getattr(qa, package), name)
+
+
+def test_an_import_by_name_says_it_as_well():
+    with pytest.raises(ImportError, match=r"Motion has moved to quietarm\.ocp\.Figures"):
+        from quietarm.ocp import Motion  # noqa: F401  # pyright: ignore
 
 
 @pytest.mark.parametrize(

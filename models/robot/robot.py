@@ -132,6 +132,7 @@ class Robot(MovingRobot):
 
     example: ClassVar[str] = "a robot, as Robot.load('robot.yaml')"
 
+    @interruptible
     def __post_init__(self) -> None:
         urdf: object = self.urdf
         text = read_text(urdf, "URDF") if isinstance(urdf, Path) else urdf
@@ -190,6 +191,7 @@ class Robot(MovingRobot):
         """
         return cls(**read_robot(path))
 
+    @interruptible
     def along(self, path: GeometricPath) -> RobotOnPath:
         """The robot on a path, a plant of whose `target` 1.0 is the end of the path.
 
@@ -200,6 +202,7 @@ class Robot(MovingRobot):
         """
         return RobotOnPath(robot=self, path=path)
 
+    @interruptible
     def task(self, path: GeometricPath, duration: float, **others: Any) -> PointToPoint:
         """The move along a path within the robot's limits; other keywords of `PointToPoint`.
 

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
 from quietarm.models.number_checks import has_no
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
@@ -53,6 +54,7 @@ class MovingRobot(RobotParts):
         assert self.tip is not None
         return self.mechanism.links[self.tip]
 
+    @interruptible
     def kinematics(self, link: str | None = None) -> Kinematics:
         """Where a link stands, if nothing bends; by default that with the beam, or else the tip.
 
@@ -68,6 +70,7 @@ class MovingRobot(RobotParts):
             raise ValueError(has_no("the robot", "link, for a line,", link, self.mechanism.links))
         return Kinematics(self.dynamics, link)
 
+    @interruptible
     def frequencies(self, q: Sequence[float] | Array) -> Array:
         """Of all modes with the driven joints held at q [rad/s], under gravity.
 
@@ -76,6 +79,7 @@ class MovingRobot(RobotParts):
         values, _ = modes_at(self.dynamics, np.asarray(q, float))
         return values
 
+    @interruptible
     def sag(self, q: Sequence[float] | Array) -> Array:
         """How far the tip hangs below the robot that does not bend [m], in the tip's frame."""
         dynamics = self.dynamics

@@ -57,8 +57,7 @@ class Reduction:
         self._tip = tip
         q = path(MIDDLE)
         self._sag_in_the_middle = sag_at(dynamics, q)
-        squares, shapes = modes_at(dynamics, q, self._sag_in_the_middle)
-        self.all_frequencies = squares
+        self.all_frequencies, shapes = modes_at(dynamics, q, self._sag_in_the_middle)
         """Of all modes in the middle of the path [rad/s]."""
         self.shapes = shapes[:, list(modes)]
         self.directions = np.arange(3)
