@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics.methods.presets import PRESETS
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def digest_of(method: Method) -> str:
     it holds, and where it is asked and told the code of its class. Of a name that of its class.
     """
     if isinstance(method, str):
-        preset = PRESETS.get(method.partition("+")[0])
+        preset = PRESETS.get(NamedMethod.read(method).method)
         if preset is None or preset.own is None:
             return ""
         whole = hashlib.sha256()

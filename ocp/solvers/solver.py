@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import Any, ClassVar, NamedTuple, TypeVar, get_type_hints
+from numbers import Integral
+from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.checks import positive, whole
+from quietarm.ocp.checks import finite, positive, quoted, whole
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.problem import Program, Solution
 
@@ -51,6 +52,35 @@ class Option(NamedTuple):
     def setting(self) -> str:
         """What a record calls it, as solver_tolerance."""
         return f"{NAME}_{self.name}"
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The words of which it is one; empty for a number or a flag."""
+        return get_args(self.kind) if get_origin(self.kind) is Literal else ()
+
+    def checked(self, value: Any) -> Any:
+        """The value; ValueError where it is not of the kind of its field, or out of range.
+
+        The default may be out of range: as None, or infinite, it stands for no bound.
+        """
+        name = f"{self.name.replace('_', ' ')} of the solver"
+        if value == self.default and type(value) is type(self.default):
+            return value
+        if self.words and value not in self.words:
+            raise ValueError(f"{name} is {quoted(value)}; give {' or '.join(self.words)}")
+        if self.kind is bool and not isinstance(value, bool):
+            raise ValueError(f"{name} is {quoted(value)}; give True or False")
+        if self.check is not None:
+            return self.check(name, value)
+        if self.kind is int and (isinstance(value, bool) or not isinstance(value, Integral)):
+            raise ValueError(f"{name} is {quoted(value)}; give a whole number")
+        return finite(name, value) if self.kind is float else value
+
+
+def _without_none(kind: Any) -> Any:
+    """The kind of an option that may also be None."""
+    kinds = [other for other in get_args(kind) if other is not type(None)]
+    return kinds[0] if type(None) in get_args(kind) and len(kinds) == 1 else kind
 
 
 def option(default: Setting, meaning: str, check: Any = None, **others: Any) -> Any:
@@ -101,10 +131,8 @@ class Solver:
 
     def __post_init__(self) -> None:
         for entry in self.options():
-            if entry.check is not None:
-                words = f"{entry.name.replace('_', ' ')} of the solver"
-                value = entry.check(words, getattr(self, entry.name))
-                object.__setattr__(self, entry.name, value)
+            value = entry.checked(getattr(self, entry.name))
+            object.__setattr__(self, entry.name, value)
 
     @classmethod
     def options(cls) -> list[Option]:
@@ -112,7 +140,7 @@ class Solver:
         kinds = get_type_hints(cls)
         return [
             entry.metadata[_OPTION]._replace(
-                name=entry.name, kind=kinds[entry.name], default=entry.default
+                name=entry.name, kind=_without_none(kinds[entry.name]), default=entry.default
             )
             for entry in fields(cls)
             if _OPTION in entry.metadata

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import click
 from rich.console import Console
@@ -232,11 +232,12 @@ def _type_of(entry: Option) -> Any:
     """How an option of a solver is read: a number in its unit, or one of several words."""
     if entry.kind is float:
         return Parsed(entry.word, partial(parse_usual, entry.unit, f"a {entry.word}"))
-    words = get_args(entry.kind)
-    return Named(entry.name.replace("_", " "), words) if words else entry.kind
+    return Named(entry.name.replace("_", " "), entry.words) if entry.words else entry.kind
 
 
 def _default_words(default: object) -> str:
+    if default is None:
+        return "none"
     return f"{default:g}" if isinstance(default, float) else str(default)
 
 

@@ -29,6 +29,8 @@ class OwnSqp(qa.Sqp):
         0.5, "How far a first step goes.", partial(positive, most=1), word="share"
     )
     second_order: Literal["exact", "estimated"] = option("exact", "What curvature is.")
+    patient: bool = option(False, "Whether it waits.")
+    cap: float | None = option(None, "The longest step; none by default.", positive)
 
     def solve(self, *given, **settings):
         self.solved.add((self.boldness, self.second_order))
@@ -70,6 +72,14 @@ def test_a_command_has_it_and_its_file_states_it(made_up, call, folder, line):
         assert stated_solver(settings) == OwnSqp(boldness=0.25, second_order="estimated")
 
 
+def test_an_option_that_may_be_none_is_a_number_on_the_command_line(made_up, done, call):
+    done(f"plan {MOVE} --terms 2 --cap 0.5 --patient --quiet --output plan.json")
+    settings = qa.Plan.load("plan.json").record.settings
+    assert (settings["solver_cap"], settings["solver_patient"]) == (0.5, True)
+    code, _, err = call(f"plan {MOVE} --terms 2 --cap much --quiet")
+    assert (code, err.count("\n")) == (2, 1)
+
+
 def test_a_sweep_goes_on_with_the_same_options_alone(made_up, call, folder):
     line = f"sweep {COARSE} 0.4,0.5 --output m.zarr --quiet"
     assert call(f"{line} {ASKED}")[0] == 0
@@ -96,6 +106,13 @@ def test_a_job_has_it_by_its_name_in_records(made_up):
     assert {boldness for boldness, _ in made_up} == {0.75}
     with pytest.raises(ValueError, match=r"boldness of the solver is 2; give at most 1"):
         Job(job.problem, "epsilon", settings={"solver_boldness": 2})
+    for name, wrong, words in (
+        ("second_order", "guessed", "is 'guessed'; give exact or estimated"),
+        ("patient", "no", "is 'no'; give True or False"),
+        ("cap", -1, "is -1; give a positive number"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            Job(job.problem, "epsilon", settings={f"solver_{name}": wrong})
     with pytest.raises(ValueError, match="has no setting 'solver_boldness'"):
         Job(job.problem, "epsilon:ipopt", settings={"solver_boldness": 0.75})
 
