@@ -195,7 +195,7 @@ class Candidate(Ranged):
         return float(ranges.min()), float(ranges.max())
 
     def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
-        """The same of each of its values on this plant."""
+        """Least and largest of each value of a quantity on this plant."""
         return self._largest(self.values_of(quantity))
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -534,7 +534,7 @@ class Limit:
         return np.maximum(least / below, largest / above)
 
     def peak_of(self, motion: Ranged) -> float:
-        """The same of a motion."""
+        """The quantity's peak over a motion, to compare with `size`."""
         return float(self.peak(*motion.range_of(self.quantity)))
 
     def keeps(self, peak: float, tolerance: float = 0.0, at_rest: float = 0.0) -> bool:

@@ -750,7 +750,7 @@ class RobotOnPath(Plant):
 
 
 def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
-    """Of products of two, without those that are nothing."""
+    """The sum of pairwise products; factors that are 0 are left out."""
     terms = [left * right for left, right in products if not (is_zero(left) or is_zero(right))]
     return sum(terms[1:], terms[0]) if terms else 0.0
 

@@ -63,7 +63,7 @@ Judgement = Candidate | Figures
 class Certified:
     """A solution with what another integrator says, and the problem, tightened, that it solves.
 
-    Whether that is CVODES' word, or CVODES confirmed it, `by_cvodes` tells.
+    `by_cvodes` is true if CVODES computed or confirmed the figures.
     """
 
     solution: Solution

@@ -51,8 +51,8 @@ class Request:
     has_stand_in : bool
         Whether another solver is tried where this one solves no start.
     thorough : bool
-        Whether, where no start is solved, another solver stands in, and an error says which limit,
-        if wider, would do: that takes a solve for each.
+        Whether an error says which limit, if wider, would do; that takes a solve for each. Then
+        another solver also stands in where no start is solved.
 
     Raises
     ------

@@ -113,8 +113,8 @@ def parse_of_plant(
 ) -> Any:
     """Read an end or the duration of a move, or a limit of it, in the units of joint and tip.
 
-    The former have one value or several; a limit is a number, or one for each side: ``-30:40``. Of
-    joints of several kinds, which are given by their names, a limit with a unit is of one of them.
+    Ends and durations may have several values. A limit is one number, or one for each side:
+    ``-30:40``. A limit with a unit is of the joints of its kind, where a robot has several kinds.
     """
     if name in OF_MOVES:
         end = ("rad", "an angle") if joint == ROTARY else ("m", "a position")

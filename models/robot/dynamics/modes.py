@@ -40,7 +40,7 @@ def as_measured(dynamics: Dynamics, measured: Measured) -> Dynamics:
 
 
 _NEAR = 0.5
-"""Logarithm of the stiffness, within which gravity changes what a frequency asks for."""
+"""Half the width of the search for the factor of the stiffness (natural logarithm)."""
 
 
 def sag_at(dynamics: Dynamics, q: Array, begin: Array | None = None) -> Array:

@@ -26,7 +26,7 @@ Limits = Mapping[str, Mapping[str, float]]
 class RobotParts:
     """A robot by its parts; `Robot` says what they are and checks them.
 
-    Two with equal parts are equal, and remarks are none.
+    Robots with equal parts are equal. Remarks are not compared.
     """
 
     urdf: str

@@ -269,7 +269,7 @@ def variations_of(
 def groups_at(
     robot: MovingRobot, path: GeometricPath, errors: tuple[tuple[str, float], ...]
 ) -> Groups:
-    """The tables where multiples of `VARIED` have these errors: as many numbers as of none."""
+    """The tables for these errors of the multiples in `VARIED`; as large as the nominal ones."""
     groups = tables_of(robot, path).groups
     if not errors:
         return groups
@@ -287,7 +287,7 @@ def groups_at(
 
 
 def _design(count: int) -> tuple[Array, list[tuple[int, ...]]]:
-    """Errors of so many multiples, shares of the farthest, and as many powers of them."""
+    """Sample points (as shares of the largest errors) and exponents to fit `count` multiples by."""
     alone = [0.5, 1.0, -0.5, -1.0]
     if count == 1:
         return np.array(alone)[:, None], [(power,) for power in range(1, 5)]

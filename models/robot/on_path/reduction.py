@@ -67,7 +67,7 @@ class Reduction:
         self.directions = np.flatnonzero(rows > _AXIAL * rows.max())
 
     def of(self, dynamics: Dynamics) -> Reduction:
-        """Of other springs or masses, in the shapes of this one's modes."""
+        """The reduction for other springs or masses, with the mode shapes of this one."""
         reduction = copy.copy(self)
         reduction.dynamics = dynamics
         reduction._sag_in_the_middle = sag_at(dynamics, self._path(MIDDLE))
