@@ -63,7 +63,9 @@ class Figure:
         The quantity whose peak it is; empty of others.
     """
 
-    example: ClassVar[str] = "a figure, as Figure('rms_torque', EFFORT, Words('RMS torque'), rms)"
+    example: ClassVar[str] = (
+        "a figure, as Figure('rms_torque', EFFORT, Words('RMS torque'), rms('torque'))"
+    )
 
     name: str
     unit: Unit
@@ -249,9 +251,9 @@ def figures_in(place: str) -> list[Figure]:
     return [figure for figure in FIGURES.values() if place in figure.shown]
 
 
-def added_figures(place: str) -> list[Figure]:
-    """Those of them that are one's own: for places where others stand in words of their own."""
-    return [figure for figure in _added.values() if place in figure.shown]
+def further_figures(place: str) -> list[Figure]:
+    """Those of a place beside residual and energy, which stand there in words of their own."""
+    return [figure for figure in figures_in(place) if figure.name not in (RESIDUAL, ENERGY)]
 
 
 class Figures(Mapping[str, Any], Ranged):

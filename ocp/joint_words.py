@@ -6,7 +6,7 @@ from quietarm.models import Plant
 from quietarm.models.dimensions import Unit, Words
 from quietarm.models.joint_motion import MIXED
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.figures import Figure, added_figures
+from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.limits import QUANTITIES
 
 
@@ -30,11 +30,11 @@ def joint_headings(plant: Plant, *columns: tuple[Words, Unit]) -> list[str]:
     ]
 
 
-def added_words(candidate: Candidate, place: str) -> list[str]:
+def further_words(candidate: Candidate, place: str) -> list[str]:
     """Figures of one's own that stand in a place, in words: "RMS torque 0.09 N m"."""
     return [
         f"{figure.label_on(candidate.task.plant)} {figure_words(candidate, figure)}"
-        for figure in added_figures(place)
+        for figure in further_figures(place)
         if figure.name in candidate.figures
     ]
 

@@ -24,7 +24,7 @@ from quietarm.ocp.checks import (
     whole,
 )
 from quietarm.ocp.escapes import csv_table
-from quietarm.ocp.figures import Figure, added_figures
+from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     Entries,
@@ -172,7 +172,7 @@ class Front(Answer):
         }
         more = {
             figure.column_on(self.task.plant): self.figure_values(figure)
-            for figure in added_figures(FRONT)
+            for figure in further_figures(FRONT)
         }
         return {**values, **more, **named, **window}
 
@@ -189,7 +189,7 @@ class Front(Answer):
         """What a notebook shows."""
         plant = self.task.plant
         unit = plant.tip_unit
-        added = added_figures(FRONT)
+        added = further_figures(FRONT)
         values = [self.figure_values(figure) for figure in added]
         head = (
             f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",

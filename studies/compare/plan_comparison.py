@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -141,11 +141,18 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     """What a page has room for; residuals in whole thousandths of a millimetre: 0 is rest."""
     lengths = [column for column in table if str(column).endswith("[mm]")]
     rounded = table.round(dict.fromkeys(lengths, 3))
-    short = {"peak ": "", "acceleration": "accel."}
-    for long, word in short.items():
-        rounded.columns = rounded.columns.str.replace(long, word, regex=False)
+    rounded.columns = [_shortened(str(column), rounded.columns) for column in rounded.columns]
     files_alone = ["parameters", "time [s]", _WHY, _WINDOW]
     return rounded.drop(columns=files_alone, errors="ignore")
+
+
+def _shortened(heading: str, others: Iterable[str]) -> str:
+    """The heading of a peak without that word, unless another figure has what is left."""
+    peak_of = heading.removeprefix("peak ")
+    if peak_of == heading or peak_of in others:
+        return heading
+    begin, *rest = peak_of.split(" ", 1)
+    return " ".join(["accel." if begin == "acceleration" else begin, *rest])
 
 
 def remarks(motions: Sequence[JudgedMotion], unit: str = "rad") -> list[str]:

@@ -82,6 +82,7 @@ def test_twice_as_many_elements_change_no_mode(machine):
     assert fine == pytest.approx(coarse, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_tool_sags_as_far_as_the_spring_of_a_clamped_beam():
     """Belt, play and beam are springs in a row; the force is held by the brake."""
     machine = replace(
@@ -178,6 +179,7 @@ def test_an_encoder_sees_nothing_within_its_step():
     assert np.abs(fine.motor).max() < 0.1 * np.abs(runs.motor).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", [GANTRY, PICKER], ids=lambda machine: machine.name)
 def test_half_the_step_changes_the_tool_by_a_hundredth_of_the_band(machine):
     asked = [smooth(0.05, 0.25)]
@@ -186,6 +188,7 @@ def test_half_the_step_changes_the_tool_by_a_hundredth_of_the_band(machine):
     assert np.abs(fine.tool - coarse.tool).max() < 0.01 * real_drive.BAND
 
 
+@pytest.mark.slow
 def test_cases_beside_each_other_do_not_disturb_each_other():
     other = replace(GANTRY, backlash=1e-4, tool=1.2)
     asked = smooth(0.05, 0.1)

@@ -221,6 +221,7 @@ def test_workers_know_the_search_of_a_file(made_up, done):
     assert len(pd.read_csv("bench/runs.csv")) == 2
 
 
+@pytest.mark.slow
 def test_an_indicator(follow, refused):
     follow("An indicator")
     runs = pd.read_csv("bench/runs.csv")
@@ -315,6 +316,7 @@ class Names(qa.ExportFormat):
 """
 
 
+@pytest.mark.slow
 def test_an_export_format_of_fronts_and_of_several_files(made_up, done, refused, folder):
     path = made_up("An export format", FRONTS)
     move = f"single-link --plant-file {path} --target 30deg --duration 0.8 --terms 2"
@@ -327,6 +329,7 @@ def test_an_export_format_of_fronts_and_of_several_files(made_up, done, refused,
     assert "none of the files that it writes" in told
 
 
+@pytest.mark.slow
 def test_a_plot(follow, call, monkeypatch):
     drawn = []
 

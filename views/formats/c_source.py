@@ -15,7 +15,7 @@ from quietarm.models.dimensions import WAY
 from quietarm.models.joint_motion import JointMotion
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import c_comment, c_string
-from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import EXPORT
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
@@ -76,7 +76,7 @@ def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         residual = tip_words(moves.residual, task.plant.tip_unit)
         figures = f"energy {moves.energy:.4g} J, residual {residual} "
         figures += window_words(task.residual_window)
-        added = added_words(moves.candidate, EXPORT)
+        added = further_words(moves.candidate, EXPORT)
         figures = ", ".join([figures, *added, *limit_words(task)])
     else:
         task = moves.grid.task

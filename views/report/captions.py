@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp import Floor, Front, Plan, Polish
-from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import CAPTION
 from quietarm.ocp.record import REST
 from quietarm.views.report.words import error_words
@@ -44,7 +44,7 @@ def caption_of_judged(motions: Sequence[JudgedMotion], tip_unit: str) -> str:
             residuals.append(judged.worst.residual)
             words = f"{_left(judged.worst.residual, tip_unit)} in the worst case"
         if judged.motion.candidate is not None:
-            words = ", ".join([words, *added_words(judged.motion.candidate, CAPTION)])
+            words = ", ".join([words, *further_words(judged.motion.candidate, CAPTION)])
         said[name] = judged.motion.energy, words
     return _caption(said, max(residuals), tip_unit)
 
@@ -67,7 +67,7 @@ def _caption(said: Mapping[str, tuple[float, str]], most_left: float, tip_unit: 
 
 def _said(motion: Plan | Floor) -> str:
     """How a motion ends, and figures of one's own."""
-    return ", ".join([_ending(motion), *added_words(motion.candidate, CAPTION)])
+    return ", ".join([_ending(motion), *further_words(motion.candidate, CAPTION)])
 
 
 def _named(name: str) -> str:

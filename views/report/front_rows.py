@@ -12,7 +12,7 @@ from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervo
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
-from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import FRONT, QUANTITIES
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.robustness import worst_of
@@ -190,7 +190,7 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
         f"{tip_words(point.peaks[objective.quantity], objective.unit)}"
         for objective in _peaks_of(front)
     )
-    words += "".join(f", {text}" for text in added_words(front.judged(point), FRONT))
+    words += "".join(f", {text}" for text in further_words(front.judged(point), FRONT))
     worst = worst_of(front.judged(point))
     return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
 

@@ -118,6 +118,7 @@ def test_the_command_writes_source_and_header(call, plan, tmp_path, monkeypatch)
     assert (code, "did you mean 'time'" in err) == (2, True)
 
 
+@pytest.mark.slow
 def test_a_rate_that_is_too_coarse_says_what_a_controller_leaves():
     task = replace(LINK, start=0.0, acceleration_limit=40.0, jerk_limit=2000.0)
     plan = plan_move(task, CycloidPolynomial(12), starts=1)
@@ -186,6 +187,7 @@ def test_the_tips_of_a_robust_plan_are_named_by_their_scenarios(tmp_path):
     assert "tip_mm_frequency_minus_5" in loadmat(tmp_path / "move.mat")
 
 
+@pytest.mark.slow
 def test_python_writes_films_and_pages_as_the_command_does(plan, tmp_path):
     written = export_plan(plan, tmp_path / "move.gif", width=200, rate=4)
     assert written == [tmp_path / "move.gif"]

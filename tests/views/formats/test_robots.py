@@ -70,6 +70,7 @@ def test_c_gives_all_joints_at_any_time(path, tmp_path):
         assert joints(time) == pytest.approx(np.vstack([positions, nothing]), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_ros_has_all_joints_at_the_controllers_rate(tmp_path):
     plan = _plan(_curved())
     export_plan(plan, tmp_path / "move.yaml", rate=125)
