@@ -69,6 +69,11 @@ class JointProfile(ABC):
         """How large the profile is, as 6 coefficients."""
         return f"{self.size} {self.term}{'s' if self.size != 1 else ''}"
 
+    def steps_between_breaks(self, steps: int) -> int:
+        """The least between two of its `breaks`, of so many steps of the whole move."""
+        del steps
+        return self.steps_of_a_piece
+
     @property
     def label(self) -> str:
         """What the profile is called in a message."""

@@ -81,6 +81,11 @@ class JointSpline(JointProfile):
         """The knots."""
         return self.knots
 
+    def steps_between_breaks(self, steps: int) -> int:
+        """More where the move has more: else a piece as short as a step would never get finer."""
+        coarsest = 80
+        return self.steps_of_a_piece * max(1, steps // coarsest)
+
     @property
     def places(self) -> NDArray[np.float64]:
         """Where the B-splines of the coefficients act, as fractions of the duration: (size,)."""
