@@ -149,17 +149,19 @@ def _fastest_on_spline(
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
-    from_least = replace(setup, guess=tuple(least.coefficients.tolist()))
-    request = PlanRequest(task, least.profile, from_least, residual_limit, quick=True)
+    steps = least.steps if setup.steps is None else setup.steps
+    from_least = replace(setup, guess=tuple(least.coefficients.tolist()), steps=steps)
+    request = PlanRequest(least.task, least.profile, from_least, residual_limit, quick=True)
     for margin in _margins(task):
         duration = (1 + margin) * least.duration
         try:
-            plan = plan_along(request.on(replace(task, duration=duration)))
+            plan = plan_along(request.on(replace(least.task, duration=duration)))
         except SolverFailedError as error:
             failed[duration] = str(error)
             continue
         settings = dict(plan.record.settings)
         settings.pop("guess", None)
+        settings["steps"] = setup.steps
         return Fastest(plan.restated(settings=settings), _longest_first(failed))
     longest, why = max(failed.items())
     raise InfeasibleTaskError(f"no duration up to {longest:.3g} s will do: {why}")
@@ -172,7 +174,7 @@ def _margins(task: PointToPoint) -> tuple[float, ...]:
     nodes. The worst case of an uncertain plant may lie between the scenarios as well.
     """
     wide = (2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
-    return (5e-4, 1e-3, *wide) if task.uncertainty is None else wide
+    return (5e-4, 1e-3, *wide) if task.uncertainty is None else (1e-3, *wide)
 
 
 def _why_too_short(task: PointToPoint, least: LeastTime) -> str:

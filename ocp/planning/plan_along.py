@@ -17,14 +17,15 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_starts
-from quietarm.ocp.planning.certify import OVERRUN, certify_one
+from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond, solve_from_starts
+from quietarm.ocp.planning.certify import OVERRUN, by_cvodes, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import PlanRequest
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
+from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
 from quietarm.ocp.record import REST
-from quietarm.ocp.robustness import Worst
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.robustness import Worst, peaks_between
+from quietarm.ocp.solvers.problem import NonlinearProgram, Solution
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
@@ -33,6 +34,8 @@ _ROUNDS = 6
 """Most rounds that add a plan's `peaks` as scenarios."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by the remaining excess."""
+_BETWEEN = 2e-4
+"""Share of the limit that is left to the worst case where it is beside a scenario."""
 
 Array = NDArray[np.float64]
 
@@ -76,12 +79,10 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     most = max(nominal_worst, REST * request.task.smallness)
     limit = min(request.residual_limit.size, most)
     try:
-        plan = _hold(request.within(limit), starts)
+        plan = _hold(request.within(limit), starts, gives_up=True)
     except InfeasibleTaskError:
         least = _least_residual(request, starts)
-        if least is None:
-            raise
-        limit = min((1 + EXCESS) * least, most)
+        limit = limit if least is None else min((1 + EXCESS) * least, most)
         plan = _hold(request.within(limit), starts)
     assert plan.worst is not None
     if plan.excess is None or plan.excess <= OVERRUN:
@@ -118,15 +119,33 @@ class _Attempt(NamedTuple):
     peaks: list[Worst]
 
 
-def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Plan:
+class _Solved(NamedTuple):
+    """A problem, its best solution from some starts, all, cheapest first, and how long it took."""
+
+    problem: NonlinearProgram
+    best: Solution
+    motions: list[Array]
+    seconds: float
+
+    @property
+    def peaks(self) -> list[Worst]:
+        """Peaks of the best motion's residual between the scenarios, before it is certified."""
+        return peaks_between(by_cvodes(self.problem.transcription, self.best.coefficients))
+
+
+def _hold(
+    request: PlanRequest, starts: list[Array], most_starts: int = 4, gives_up: bool = False
+) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
     scenarios, and of the motions that were found so many are the next starts. The limit is then
     divided by the remaining excess; where that does not settle it, they become scenarios as well.
+    A search that gives up looks for nothing else where no start leads to a limit far out of reach.
     """
     limit = request.residual_limit.size
-    attempt = _solve_and_look_between(request, starts)
+    request, solved = _solve_with_the_worst(request, starts, most_starts, gives_up)
+    attempt = _attempt(request, solved)
     plan = attempt.plan
     tightened = limit
     rounds = 0
@@ -135,7 +154,7 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
         plan = attempt.plan
         excess = attempt.peaks[0].residual / limit - 1
         above = [peak for peak in attempt.peaks if peak.residual > limit]
-        scenarios = _new_scenarios(request.task, above)
+        scenarios = new_scenarios(request.task, above)
         can_add = bool(scenarios) and rounds < _ROUNDS
         can_tighten = excess > 0 and tightenings < _TIGHTENINGS
         starts = [np.array(plan.coefficients)]
@@ -157,7 +176,8 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
         else:
             break
         try:
-            attempt = _solve_and_look_between(following, starts)
+            again = _solve_near(following, starts) if tightenings else _solve(following, starts)
+            attempt = _attempt(following, again)
             plan = attempt.plan
         except SolverFailedError:
             if not tightenings:
@@ -166,18 +186,55 @@ def _hold(request: PlanRequest, starts: list[Array], most_starts: int = 4) -> Pl
     return plan.with_entries(residual_limit=limit)
 
 
-def _solve_and_look_between(request: PlanRequest, starts: list[Array]) -> _Attempt:
-    """As `plan_from_starts`, and the peaks of the residual between the scenarios, if it has any."""
-    plan, solved = plan_from_starts(request, starts)
-    return _Attempt(plan, solved, list(plan.peaks))
+def _solve_with_the_worst(
+    request: PlanRequest, starts: list[Array], most_starts: int, gives_up: bool
+) -> tuple[PlanRequest, _Solved]:
+    """The request with the worst cases of its solution as scenarios, and that solution.
 
-
-def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
-    """The plan from starts, whose limit holds in all scenarios.
-
-    And the coefficients of all that were solved, cheapest first. Errors are those of
-    `solve_from_starts` and `certify`.
+    They are looked for before anything is certified, which takes several solves. A worst case that
+    is near one of those replaces it. A limit that is hardly exceeded is tightened by as much.
     """
+    limit = request.residual_limit.size
+    solved = _solve(request, starts, gives_up)
+    for _ in range(_ROUNDS if request.task.ranges and limit > 0 else 0):
+        peaks = solved.peaks
+        excess = peaks[0].residual / limit - 1
+        above = [peak for peak in peaks if peak.residual > (1 + OVERRUN) * limit]
+        scenarios = new_scenarios(request.task, above)
+        if not scenarios:
+            if new_scenarios(request.task, peaks[:1]) and excess > -_BETWEEN:
+                tightened = limit / (1 + max(excess, 0.0) + _BETWEEN)
+                return request, _solve_near(request.within(tightened), solved.motions)
+            break
+        following = request.on(with_moved_scenarios(request.task, scenarios))
+        try:
+            if excess > EXCESS:
+                near = solved.motions[:most_starts]
+                solved = _solve(following, near, gives_up)
+            else:
+                solved = _solve_near(following, solved.motions)
+        except SolverFailedError:
+            if excess > EXCESS:
+                raise
+            break  # so little may be had by a tighter limit
+        request = following
+    return request, solved
+
+
+def _attempt(request: PlanRequest, solved: _Solved) -> _Attempt:
+    """The certified plan, and the peaks of its residual between the scenarios, if it has any."""
+    plan = _certified_plan(request, solved)
+    return _Attempt(plan, solved.motions, list(plan.peaks))
+
+
+def _solve(request: PlanRequest, starts: Sequence[Array], gives_up: bool = False) -> _Solved:
+    """What starts lead to, with the errors of `solve_from_starts`."""
+    if gives_up and not request.quick:
+        try:
+            return _solve(replace(request, quick=True), starts)
+        except InfeasibleTaskError:
+            if is_beyond(request.problem(), starts[0]):
+                raise
     began = time.perf_counter()
     setup = request.setup
     problem = request.problem()
@@ -189,10 +246,38 @@ def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Pla
         thorough=setup.thorough,
         has_stand_in=request.has_stand_in,
     )
-    certified = certify_one(problem, best, setup.solver)
+    coefficients = [solution.coefficients for solution in solved]
+    return _Solved(problem, best, coefficients, time.perf_counter() - began)
+
+
+def _solve_near(request: PlanRequest, starts: Sequence[Array]) -> _Solved:
+    """The same from a start that is nearly a solution, or from anew where that leads nowhere."""
+    began = time.perf_counter()
+    problem = request.problem()
+    (best,) = best_of_starts([problem], [starts[:1]], request.setup.solver, warm=True)
+    if not best.status.solved:
+        return _solve(request, starts)
+    return _Solved(problem, best, [best.coefficients], time.perf_counter() - began)
+
+
+def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
+    """The plan from starts, whose limit holds in all scenarios.
+
+    And the coefficients of all that were solved, cheapest first. Errors are those of
+    `solve_from_starts` and `certify`.
+    """
+    solved = _solve(request, starts)
+    return _certified_plan(request, solved), solved.motions
+
+
+def _certified_plan(request: PlanRequest, solved: _Solved) -> Plan:
+    """The plan of a solution, judged by CVODES."""
+    began = time.perf_counter() - solved.seconds
+    setup = request.setup
+    certified = certify_one(solved.problem, solved.best, setup.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution
-    plan = Plan.of_candidate(
+    return Plan.of_candidate(
         certified.checked,
         status=solution.status,
         record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
@@ -200,15 +285,3 @@ def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Pla
         residual_limit=request.residual_limit.size,
         shadow_prices=solution.shadow_prices,
     )
-    return plan, [solution.coefficients for solution in solved]
-
-
-def _new_scenarios(task: PointToPoint, peaks: list[Worst], same: float = 1e-6) -> list[list[float]]:
-    """The errors of those peaks that are no scenario of the task yet.
-
-    Errors that differ by less than the share `same` of their range are one scenario.
-    """
-    known = np.array(task.scenarios[1:])
-    near = same * np.array(list(task.ranges.values()))
-    errors = [list(peak.errors.values()) for peak in peaks]
-    return [error for error in errors if (np.abs(known - error) > near).any(axis=1).all()]
