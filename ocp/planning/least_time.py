@@ -261,7 +261,7 @@ class _Durations:
         """The task with what passes the residual's limit between its scenarios; None if nothing."""
         if self._task.uncertainty is None:
             return None
-        peaks = peaks_between(self._motion(least))
+        peaks = peaks_between(self._motion(least), roughly=True)
         above = [peak for peak in peaks if peak.residual > (1 + self.margin) * self._residual_limit]
         scenarios = new_scenarios(self._task, above)
         return with_moved_scenarios(self._task, scenarios) if scenarios else None

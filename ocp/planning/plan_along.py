@@ -130,7 +130,8 @@ class _Solved(NamedTuple):
     @property
     def peaks(self) -> list[Worst]:
         """Peaks of the best motion's residual between the scenarios, before it is certified."""
-        return peaks_between(by_cvodes(self.problem.transcription, self.best.coefficients))
+        motion = by_cvodes(self.problem.transcription, self.best.coefficients)
+        return peaks_between(motion, roughly=True)
 
 
 def _hold(

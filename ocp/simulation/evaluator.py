@@ -348,7 +348,8 @@ def simulate(
 
 @lru_cache(maxsize=RECENT)
 def _compiled_values(simulation: Simulation) -> RowFunction:
-    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, 100))
+    largest = 100 if simulation.plant.steps_at_once == 1 else 32  # see `Batch`
+    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, largest))
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:

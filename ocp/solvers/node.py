@@ -34,6 +34,8 @@ def symbols(count: int, shape: Shape) -> list[ca.MX]:
 
 def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     """First derivatives of a column of expressions, entry by entry."""
+    if not column:
+        return {}
     unit = ca.MX.ones(*column[0].shape)
     zero = ca.MX(*column[0].shape)
     places = range(len(by))
@@ -78,6 +80,8 @@ def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
     for (i, k), entry in table.items():
         term = entry * column[k]
         sums[i] = sums[i] + term if i in sums else term
+    if not rows:
+        return []
     zero = ca.MX.zeros(*column[0].shape)
     return [sums.get(i, zero) for i in range(rows)]
 
@@ -181,6 +185,7 @@ class Node:
 
     The outputs are the joints' `powers`, the energy's smooth part where it has one, and the values
     of the limited quantities: `count` in all, of which the first `of_energy` belong to the energy.
+    Where only arrivals are asked for there are none.
     """
 
     def __init__(
@@ -188,6 +193,7 @@ class Node:
         simulation: Simulation,
         path: Path,
         shape: Shape,
+        only_arrivals: bool = False,
     ) -> None:
         m = simulation.plant.modes
         zero = ca.MX.zeros(*shape)
@@ -203,12 +209,14 @@ class Node:
         perturbed = perturb_plant(simulation.plant, dict(zip(simulation.errors, errors)))
         f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
         sample = sample_plant(perturbed, joint, W, dW, ddW)
-        smooth = smooth_power(simulation.energy, sample)
-        of_energy = [*sample.powers, *([] if is_zero(smooth) else [smooth])]
-        limited = [x for quantity in simulation.quantities for x in quantity.values(sample)]
+        powers = [] if only_arrivals else [*sample.powers]
+        smooth = 0.0 if only_arrivals else smooth_power(simulation.energy, sample)
+        of_energy = [*powers, *([] if is_zero(smooth) else [smooth])]
+        quantities = () if only_arrivals else simulation.quantities
+        limited = [x for quantity in quantities for x in quantity.values(sample)]
         o = [zero + x for x in (*of_energy, *limited)]
         inputs = [*v, *move, *errors]
-        self.powers = len(sample.powers)
+        self.powers = len(powers)
         self.of_energy = len(of_energy)
         self.count = len(o)
         outputs = {(i, 0): x for i, x in enumerate(o)}

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import daqp
@@ -133,19 +132,17 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
 def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> list[Derivatives]:
     """A candidate of each of several transcriptions of one batch, in all its scenarios.
 
-    Coefficients have shape (transcriptions, profile.size).
+    Coefficients have shape (transcriptions, profile.size); all have as many scenarios.
     """
-    counts = [len(transcription.errors) for transcription in transcriptions]
-    derivatives = transcriptions[0].batch.derivatives(
-        np.repeat(coefficients, counts, axis=0),
-        np.repeat(
-            [transcription.task.row for transcription in transcriptions],
-            counts,
-            axis=0,
-        ),
-        np.concatenate([transcription.errors for transcription in transcriptions]),
+    derivatives = transcriptions[0].batch.in_scenarios(
+        coefficients,
+        np.array([transcription.task.row for transcription in transcriptions]),
+        np.array([transcription.errors for transcription in transcriptions]),
     )
-    return [derivatives.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
+    return [
+        Derivatives(**{name: part[i] for name, part in vars(derivatives).items()})
+        for i in range(len(transcriptions))
+    ]
 
 
 def transcribe(

@@ -59,7 +59,7 @@ class Sqp(Solver):
         for places in _group_by_form(problems):
             alike = [problems[i] for i in places]
             transcription = alike[0].transcription
-            transcription.batch.prepare(len(alike) * len(transcription.errors))
+            transcription.batch.prepare(len(alike), len(transcription.errors))
             programs = Programs(alike)
             x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(
