@@ -102,9 +102,7 @@ def least_time(
         if uncertain is None:
             break
         # on as many steps as the plan takes, which then need not be compiled again
-        durations = _Durations(
-            uncertain, best.profile, residual_limit, bound, fewest_steps=finer
-        )
+        durations = _Durations(uncertain, best.profile, residual_limit, bound, fewest_steps=finer)
         best = durations.least(best.duration, (1 + _GAIN) * best.duration, tolerance)
     if durations.widen_margins(best):
         best = durations.least(best.duration, (1 + _GAIN) * best.duration, tolerance)

@@ -17,7 +17,13 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond, solve_from_starts
+from quietarm.ocp.planning.best_of_starts import (
+    SAME,
+    best_of_starts,
+    is_beyond,
+    minimum_of,
+    solve_from_starts,
+)
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import PlanRequest
@@ -34,6 +40,10 @@ _ROUNDS = 6
 """Most rounds that add a plan's `peaks` as scenarios."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by the remaining excess."""
+_MOST_MOTIONS = 4
+"""Of the nominal plant, from which a robust plan starts."""
+_NOMINAL_STARTS = 8
+"""Most starts of a robust plan, these motions and given ones, unless more are asked for."""
 _BETWEEN = 2e-4
 """Share of the limit that is left to the worst case where it is beside a scenario."""
 
@@ -71,11 +81,12 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     """
     request = replace(request, quick=False)
     starts = request.starts
-    nominal = _nominal_plan(request)
+    nominal, motions = _nominal_plan(request)
     nominal_worst = np.inf
     if nominal is not None and nominal.worst is not None:
         nominal_worst = nominal.worst.residual
-        starts = [np.array(nominal.coefficients), *starts]
+        # of many random starts, as networks take them, those stand for the others that led there
+        starts = [*motions, *starts[: max(request.setup.starts, _NOMINAL_STARTS - len(motions))]]
     most = max(nominal_worst, REST * request.task.smallness)
     limit = min(request.residual_limit.size, most)
     try:
@@ -93,15 +104,20 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     return plan.with_entries(residual_limit=plan.worst.residual)
 
 
-def _nominal_plan(request: PlanRequest) -> Plan | None:
-    """The plan at rest of the nominal plant, for the uncertain task; None where there is none."""
+def _nominal_plan(request: PlanRequest) -> tuple[Plan | None, list[Array]]:
+    """The plan at rest of the nominal plant, for the uncertain task; None where there is none.
+
+    And the coefficients of some that were solved, itself first.
+    """
     nominal = request.on(request.task.certain).within(0.0)
     try:
         refuse_too_short(nominal.task, arrives_at_rest(nominal.task, nominal.residual_limit))
-        plan = _hold(nominal, request.starts)
+        solved = _solve(nominal, request.starts)
+        plan = _certified_plan(nominal, solved)
     except SolverFailedError:  # only other motions may keep the limits
-        return None
-    return plan.on(request.task)
+        return None, []
+    motions = [np.array(plan.coefficients), *solved.motions[1:_MOST_MOTIONS]]
+    return plan.on(request.task), motions
 
 
 def _least_residual(request: PlanRequest, starts: list[Array]) -> float | None:
@@ -120,7 +136,10 @@ class _Attempt(NamedTuple):
 
 
 class _Solved(NamedTuple):
-    """A problem, its best solution from some starts, all, cheapest first, and how long it took."""
+    """A problem, its best solution from some starts, the coefficients of all, and how long it took.
+
+    The cheapest come first; of those that cost the same there is one.
+    """
 
     problem: NonlinearProgram
     best: Solution
@@ -247,8 +266,14 @@ def _solve(request: PlanRequest, starts: Sequence[Array], gives_up: bool = False
         thorough=setup.thorough,
         has_stand_in=request.has_stand_in,
     )
-    coefficients = [solution.coefficients for solution in solved]
-    return _Solved(problem, best, coefficients, time.perf_counter() - began)
+    minima = [minimum_of(solution, problem.scalarization) for solution in solved]
+    cheaper = [-np.inf, *((1 + SAME) * minimum for minimum in minima)]
+    distinct = [
+        solution.coefficients
+        for solution, minimum, most in zip(solved, minima, cheaper)
+        if minimum > most
+    ]
+    return _Solved(problem, best, distinct, time.perf_counter() - began)
 
 
 def _solve_near(request: PlanRequest, starts: Sequence[Array]) -> _Solved:

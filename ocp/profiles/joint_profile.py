@@ -143,6 +143,15 @@ class JointProfile(ABC):
         )
         return share, rate, bend
 
+    def table(self, fractions: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """The share of the way and its first three derivatives, if linear in the coefficients.
+
+        Shape (1 + size, 4, fractions): of no coefficients, and what a unit of each adds. None where
+        there are no numbers for it, or none that save anything.
+        """
+        del fractions
+        return None
+
     def motion_of(
         self,
         derivatives: Derivatives,

@@ -141,7 +141,9 @@ class Batch:
         size = self.simulation.profile.size
         mesh = self.simulation.mesh
         rows = built[0] if built else 1
-        path = path_of(self.simulation.profile, mesh, ask_for_jerk(self.simulation.quantities), rows)
+        path = path_of(
+            self.simulation.profile, mesh, ask_for_jerk(self.simulation.quantities), rows
+        )
         if not path.linear:
             return None
         table = path.jacobian([0.0] * size, [])

@@ -331,7 +331,7 @@ class _Differentiated:
 
     def compile(self) -> ca.Function:
         """All of it as a function."""
-        rows, steps = self.shape
+        _, steps = self.shape
         of_energy = self.node.of_energy
         powers = self.outputs[: self.node.powers]
         smooth = self.outputs[self.node.powers : of_energy]
