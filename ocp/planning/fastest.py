@@ -11,9 +11,12 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.planning.best_of_starts import is_beyond
 from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
@@ -35,6 +38,7 @@ from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 _GROWTH = 1.5
 """By which a duration along a given profile grows where it fails."""
+_BEYOND = "every motion found exceeds a limit by 0.05 of it or more"
 _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
 
 
@@ -244,10 +248,15 @@ class _Tried:
         guess = None if self.best is None else self.best.coefficients
         request = self.request.on(task)
         request = replace(request, setup=replace(request.setup, thorough=self._thorough))
+        along = request.along(self.request.profile, guess)
         if self._thorough:
             self._explained.add(duration)
+        elif guess is not None and is_beyond(along.problem(), np.array(guess)):
+            # far out of reach a solver takes all its iterations to say so
+            self.failed[duration] = _BEYOND
+            return False
         try:
-            self.best = plan_along(request.along(self.request.profile, guess))
+            self.best = plan_along(along)
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False
