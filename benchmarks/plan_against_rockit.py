@@ -55,11 +55,8 @@ from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.solvers.nlp import OPTIONS
 from quietarm.ocp.solvers.problem import (
-    RESIDUAL,
-    NonlinearProgram,
-    Scalarization,
+    Program,
     Solution,
-    Transcription,
 )
 from quietarm.ocp.solvers.sqp import Sqp
 
@@ -83,7 +80,7 @@ class Move:
     def of(cls, title: str, task: PointToPoint, bound: float | None) -> Move:
         """The move with what is known of it before."""
         best = plan_move(task, PROFILE, bound=bound, steps=STEPS[-1])
-        steps = Transcription(task, PROFILE, STEPS[-1])
+        steps = Program(task, PROFILE, STEPS[-1])
         scale = np.append(steps.arrival_scale, steps.energy_scale / task.duration)
         return cls(title, task, bound, scale, best.energy)
 
@@ -97,8 +94,7 @@ class Move:
 
     def solve(self, steps: int) -> Solution:
         """Solve by quietarm, without the verification."""
-        asked = Scalarization({RESIDUAL: 0.0}, self.bound)
-        problem = NonlinearProgram(Transcription(self.task, PROFILE, steps), asked)
+        problem = Program(self.task, PROFILE, steps).within(0.0, self.bound)
         (solution,) = Sqp().solve([problem], [PROFILE.plain])
         return solution
 

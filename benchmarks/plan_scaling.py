@@ -38,11 +38,8 @@ from rich.table import Table
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint, QuietarmError, plan_move
 from quietarm.ocp.solvers.problem import (
-    RESIDUAL,
-    NonlinearProgram,
-    Scalarization,
+    Program,
     Solution,
-    Transcription,
 )
 from quietarm.ocp.solvers.sqp import Sqp
 
@@ -79,8 +76,7 @@ def measure(case: Case) -> Timing:
     forget_compiled()
 
     def solved() -> Solution:
-        asked = Scalarization({RESIDUAL: 0.0}, case.bound)
-        problem = NonlinearProgram(Transcription(TASK, profile, case.steps), asked)
+        problem = Program(TASK, profile, case.steps).within(0.0, case.bound)
         (solution,) = Sqp().solve([problem], [guess])
         return solution
 

@@ -51,7 +51,7 @@ from parts.population.equations import PROFILE, TASK
 from parts.population.rows import CANDIDATES, SHARE, Method, methods
 from rich.table import Table
 
-from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
+from quietarm.metaheuristics.evaluation.population import objectives_of, search_evaluator
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.cost import COST
 from quietarm.ocp.simulation.evaluator import Evaluator
@@ -148,7 +148,7 @@ def tasks_table(population: NDArray[np.float64]) -> Table:
 
 MEMORY = f"""
 import math, numpy as np
-from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
+from quietarm.metaheuristics.evaluation.population import objectives_of, search_evaluator
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import CycloidPolynomial, PointToPoint
 

@@ -101,9 +101,20 @@ def _described(package, name, value):
         return _constant(package, name, value)
     if isinstance(value, type):
         kind = "exception" if issubclass(value, BaseException) else "class"
-        members = "" if issubclass(value, (BaseException, tuple)) else "   :members:\n"
+        members = "" if issubclass(value, (BaseException, tuple)) else _members(package, value)
         return f".. auto{kind}:: quietarm.{package}.{name}\n{members}"
     return f".. autofunction:: quietarm.{package}.{name}\n"
+
+
+def _members(package, value):
+    """All members of a class: its own, and those of bases that have no entry of their own."""
+    public = set(import_module(f"quietarm.{package}").__all__)
+    described = [
+        base.__name__
+        for base in value.__mro__[1:]
+        if base.__name__ in public or not base.__module__.startswith("quietarm.")
+    ]
+    return f"   :members:\n   :inherited-members: {', '.join(described)}\n"
 
 
 def _constant(package, name, value):
@@ -134,7 +145,7 @@ def _fill(app, docname, source):
     if docname == "docs/commands":
         for name in COMMANDS:
             own = "list_" if name == "list" else name
-            command = f"quietarm.studies.cli.commands.{own}:{own}"
+            command = f"quietarm.studies.cli.commands.{name}_command:{own}"
             directive = f".. click:: {command}\n   :prog: quietarm {name}"
             source[0] += f"\n```{{eval-rst}}\n{directive}\n```\n"
     if docname.startswith("docs/reference/"):

@@ -275,41 +275,38 @@ def page_of_sliders(quick: bool) -> Picture:
     assert process.stdout is not None
     try:
         address = process.stdout.readline().strip()
-        with a_page(1040, 900, reduced_motion="reduce", device_scale_factor=2) as page:
+        with a_page(1200, 900, reduced_motion="reduce", device_scale_factor=2) as page:
             page.goto(address)
-            figures = page.locator(".figures .bk-clearfix")
+            figures = page.locator("#rows")
             expect(figures).to_contain_text("0 to 30 deg")
+            page.locator("#limits summary").click()
             box = page.get_by_label("largest |a_n|")
             box.fill("0.2")
             box.press("Enter")
             page.get_by_role("button", name="Front", exact=True).click()
-            front = "Bokeh.documents[0].get_model_by_name('front').title.text"
-            page.wait_for_function(f"{front}.startsWith('front:')")
+            expect(page.locator("#said")).to_have_text("drag the ring along the front")
             page.get_by_role("button", name="Plan", exact=True).click()
             expect(figures).to_contain_text("found a local optimum")
-            page.wait_for_timeout(1300)  # the curves are drawn
+            page.locator("#limits summary").click()
+            expect(page.locator("#robustness path")).to_have_count(1)
             words = page.evaluate("document.body.innerText").splitlines()
-            titles = page.evaluate(
-                "[...Bokeh.documents[0]._all_models.values()]"
-                ".map(model => model.title?.text ?? model.axis_label).filter(Boolean)"
-            )
             picture = _with_dots(page.screenshot(full_page=True), 192)
-            narrow = None if quick else _first_sections(page)
+            narrow = None if quick else _first_cards(page)
     finally:
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=240)
-    shown: Shown = {"words": masked([*words, *map(str, titles)]), "lines": [], "areas": []}
+    shown: Shown = {"words": masked(words), "lines": [], "areas": []}
     return Picture(picture, shown, narrow)
 
 
-def _first_sections(page: Any) -> bytes:
-    """The page of explore on a phone: the arm, what plans it, and how far its tip swings."""
-    page.set_viewport_size({"width": 370, "height": 1200})  # the words at its end cover nothing
-    page.wait_for_timeout(1300)
-    last = page.locator(".deflection").bounding_box()
+def _first_cards(page: Any) -> bytes:
+    """The page of explore on a phone: the arm, the front and the sliders."""
+    page.set_viewport_size({"width": 370, "height": 1200})
+    page.wait_for_timeout(500)
+    last = page.locator("#hand").bounding_box()
     around = 8
     clip = {"x": 0, "y": 0, "width": 370, "height": last["y"] + last["height"] + around}
-    return _with_dots(page.screenshot(clip=clip), 192)
+    return _with_dots(page.screenshot(clip=clip, full_page=True), 192)
 
 
 def page_to_drag(quick: bool) -> Picture:

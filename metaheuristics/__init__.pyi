@@ -1,7 +1,4 @@
 from .algorithms.nsga2 import PaperNSGA2 as PaperNSGA2
-from .algorithms.presets import PAPER_BOX as PAPER_BOX
-from .algorithms.presets import PRESETS as PRESETS
-from .algorithms.presets import Preset as Preset
 from .algorithms.velocity import CONSTRICTION as CONSTRICTION
 from .algorithms.velocity import INERTIA_2002 as INERTIA_2002
 from .algorithms.velocity import PAPER_GROUP as PAPER_GROUP
@@ -11,6 +8,10 @@ from .jobs import Job as Job
 from .jobs import LostJobsError as LostJobsError
 from .jobs import finished_jobs as finished_jobs
 from .jobs import run_jobs as run_jobs
+from .methods.preset import Preset as Preset
+from .methods.presets import PAPER_BOX as PAPER_BOX
+from .methods.presets import PRESETS as PRESETS
+from .methods.search_method import SearchMethod as SearchMethod
 from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of
@@ -20,5 +21,6 @@ from .problems.recorded import RecordedFunction as RecordedFunction
 from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .run_search import SearchProgress as SearchProgress
 from .run_search import search as search
+from .score import Indicator as Indicator
 from .score import Reference as Reference
 from .spread import Spread as Spread

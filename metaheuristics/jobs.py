@@ -10,21 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.algorithms.presets import PRESETS, preset_of
-from quietarm.metaheuristics.gradient import (
-    GRADIENT,
+from quietarm.metaheuristics.evaluation.noise import noise_share, times_evaluated
+from quietarm.metaheuristics.methods.gradient_methods import (
     check_settings,
     gradient_front,
     polished,
     solver_with,
     split_solver_options,
 )
-from quietarm.metaheuristics.objective.noise import noise_share, times_evaluated
-from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
-from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
-from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
-from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
-from quietarm.metaheuristics.user_method import (
+from quietarm.metaheuristics.methods.presets import PRESETS, preset_of
+from quietarm.metaheuristics.methods.user_method import (
     Method,
     check_method,
     digest_of,
@@ -33,12 +28,16 @@ from quietarm.metaheuristics.user_method import (
     run_method,
     why_not_sent,
 )
+from quietarm.metaheuristics.named_method import GRADIENT, POLISH, NamedMethod
+from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
+from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
+from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
+from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import unknown, whole, words_of_error
 from quietarm.ocp.objectives import refuse_more_objectives
 from quietarm.ocp.record import Setting
 
-POLISH = "+polish"
 DIED = "its worker died twice"
 _rehearsed: set[tuple[NamedProblem, str]] = set()
 
@@ -106,15 +105,16 @@ class Job:
             "noise": share,
             "reevaluate": times_evaluated(reevaluate, share),
         }
-        if isinstance(method, str) and method in GRADIENT:
-            refuse_more_objectives(method.partition(":")[0], problem.objectives)
+        named = NamedMethod.read(method) if isinstance(method, str) else None
+        if named and named.is_gradient_job:
+            refuse_more_objectives(named.method, problem.objectives)
             if share:
                 raise ValueError(
                     f"{method} takes the gradient of the model, which has no noise; leave the "
                     "noise out"
                 )
-        elif isinstance(method, str):
-            preset_of(method.removesuffix(POLISH)).refuse_unfit(len(problem.objectives), share)
+        elif named:
+            preset_of(named.method).refuse_unfit(len(problem.objectives), share)
         for name, value in fields.items():
             object.__setattr__(self, name, value)
 
@@ -161,35 +161,35 @@ class Job:
         budget = self.budget
         settings = dict(self.settings)
         method: Any = self.method
+        named = NamedMethod.read(method) if isinstance(method, str) else None
         common: Any = {
             "profile": problem.profile,
             "bound": problem.bound,
             "seed": self.seed,
         }
-        if budget is None:
+        if named and named.is_gradient_job:
             if rehearse:
-                settings = {"starts" if "multistart" in method else "points": rehearsal}
+                settings["starts" if named.method == "multistart" else "points"] = rehearsal
             return gradient_front(
                 problem.task,
-                method=method,
+                method=named,
                 settings=settings,
                 objectives=problem.objectives,
                 **common,
             )
         population: Any = settings.pop("population", None)
         size = 100
-        polish = False
         options = dict[str, Any]()
-        if isinstance(method, str):
-            polish = method.endswith(POLISH)
-            method = method.removesuffix(POLISH)
-            if polish:
+        if named:
+            method = named.method
+            if named.polish:
                 options, settings = split_solver_options(settings)
             preset = PRESETS[method]
             of_population = population or preset.population
             size = preset.evaluations(of_population, 1, len(problem.objectives))
+        assert budget is not None  # only the gradient ends by itself
         budget = min(budget, rehearsal * size) if rehearse else budget
-        if not (isinstance(method, str) or is_of_pymoo(method)):
+        if not (named or is_of_pymoo(method)):
             function = problem.recorded(
                 budget, noise=self.noise, reevaluate=self.reevaluate, seed=self.seed
             )
@@ -206,7 +206,7 @@ class Job:
             reevaluate=self.reevaluate,
             **common,
         )
-        return polished(front, solver_with(options)) if polish else front
+        return polished(front, solver_with(options)) if named and named.polish else front
 
 
 def _budget(
@@ -216,25 +216,25 @@ def _budget(
 
     ValueError where method, settings and budget do not fit.
     """
-    if isinstance(method, str) and method in GRADIENT:
+    named = NamedMethod.read(method) if isinstance(method, str) else None
+    if named and named.is_gradient_job:
         if budget is not None:
-            raise ValueError(f"{method} ends by itself; leave its budget out")
-        check_settings(method, settings)
+            raise ValueError(f"{named} ends by itself; leave its budget out")
+        check_settings(named, settings)
         return None
-    if isinstance(method, str):
-        search_name = method.removesuffix(POLISH)
-        if search_name not in PRESETS:
+    if named:
+        if named.method not in PRESETS or named != NamedMethod(named.method, polish=named.polish):
             raise ValueError(
                 unknown(
                     "method",
-                    method,
+                    str(method),
                     [*PRESETS, *GRADIENT],
                     f", NAME{POLISH}",
                 )
             )
-        preset = preset_of(search_name)
+        preset = preset_of(named.method)
         search_settings = dict(settings)
-        if method.endswith(POLISH):
+        if named.polish:
             options, search_settings = split_solver_options(settings)
             solver_with(options)  # refuses what is out of range
         population: Any = search_settings.pop("population", preset.population)

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from threading import Thread
 from typing import Any
 
+from quietarm.models.plant_file import WithPlantFiles
 from quietarm.ocp import QuietarmError
 from quietarm.ocp.checks import install
 
@@ -43,13 +44,14 @@ def side_by_side(
     """
     if not items:
         return
+    sent = WithPlantFiles(function)
     if isinstance(workers, str):
-        yield from _on_cluster(function, items, workers)
+        yield from _on_cluster(sent, items, workers)
     elif min(workers, len(items)) == 1 and not apart:
         yield from map(function, items)
     else:
         # joblib has one worker's work done in this process
-        yield from _in_processes(function, items, max(min(workers, len(items)), 2))
+        yield from _in_processes(sent, items, max(min(workers, len(items)), 2))
 
 
 def _in_processes(

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from quietarm.metaheuristics.algorithms.presets import PAPER_BOX, PRESETS, Preset, preset_of
+from quietarm.metaheuristics.methods.preset import Preset
+from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS, preset_of
+from quietarm.metaheuristics.methods.search_method import SearchMethod
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes, whole
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
@@ -66,7 +68,7 @@ def search(
     task: PointToPoint,
     profile: JointProfile | None = None,
     *,
-    algorithm: str | Algorithm = "nsga2",
+    algorithm: str | SearchMethod | Algorithm = "nsga2",
     bound: float | None = None,
     population: int | None = None,
     generations: int | None = None,
@@ -89,10 +91,10 @@ def search(
     profile : JointProfile, optional
         How the joint moves; by default the polynomial that `plan_move` takes for the task: of six
         terms without limits, of 18 or 24 within.
-    algorithm : str or pymoo Algorithm
+    algorithm : str, SearchMethod or pymoo Algorithm
         A name of `PRESETS`: ``"nsga2-paper"`` and ``"vepso"`` have the paper's settings, the others
-        pymoo's. Or any multi-objective algorithm of pymoo that was not run yet; it is copied, so
-        the one given stays as it is.
+        pymoo's. Or an object of one's own `SearchMethod`. Or any multi-objective algorithm of pymoo
+        that was not run yet; it is copied, so the one given stays as it is.
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     population, generations : int, optional
@@ -136,6 +138,9 @@ def search(
     names = checked_objectives(objectives)
     if generations is not None and evaluations is not None:
         raise ValueError("evaluations stand in place of generations; leave one of them out")
+    if isinstance(algorithm, SearchMethod):
+        settings = {name: getattr(algorithm, name) for name in algorithm.defaults()}
+        algorithm = algorithm.name
     if isinstance(algorithm, str):
         method = algorithm
         preset = preset_of(algorithm)
@@ -318,8 +323,8 @@ def _of_user(
     """A copy of an algorithm that was given, and what it is set to."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
-    from quietarm.metaheuristics.algorithms.algorithm_settings import settings_of
-    from quietarm.metaheuristics.algorithms.user_algorithm import copy_of_algorithm
+    from quietarm.metaheuristics.methods.algorithm_settings import settings_of
+    from quietarm.metaheuristics.methods.user_algorithm import copy_of_algorithm
 
     value: Any = algorithm
     if inspect.isclass(value):

@@ -1,25 +1,35 @@
 """How good the points of a front are, computed from them when it is asked for.
 
-An indicator is one entry of `INDICATORS`: searches, benches and comparisons use, tabulate and test
-every entry. Formulas: docs/measures.md.
+An indicator is one class: searches, benches and comparisons use, tabulate and test every one that
+is known. Formulas: docs/measures.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from math import ceil, nan
-from types import MappingProxyType
+from typing import Any, ClassVar
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.objective.population import figures_of_motions
+from quietarm.metaheuristics.evaluation.population import figures_of_motions
 from quietarm.metaheuristics.thinning import MOST_POINTS, thinned
 from quietarm.ocp import Front, Mark
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import (
+    failed_in,
+    forgotten_if_refused,
+    known,
+    object_of,
+    quoted,
+    ships,
+    takes,
+)
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
@@ -55,7 +65,9 @@ class Scale:
 
     def scores(self, points: Array) -> dict[str, float]:
         """Every indicator of points, shape (n, objectives), by its name."""
-        return {name: self.score(points, indicator) for name, indicator in INDICATORS.items()}
+        return {
+            name: self.score(points, indicator) for name, indicator in known_indicators().items()
+        }
 
     def score(self, points: Array, indicator: Indicator) -> float:
         """An indicator of points, shape (n, objectives), in SI units.
@@ -65,7 +77,7 @@ class Scale:
         """
         if not len(points):
             return indicator.of_nothing
-        return indicator.of(moocore.filter_dominated(self.scaled(points)), self)
+        return indicator(moocore.filter_dominated(self.scaled(points)), self)
 
 
 class Reference(Scale):
@@ -94,92 +106,141 @@ class Reference(Scale):
         object.__setattr__(self, "front", front)
 
 
-def hypervolume(scaled: Array, scale: Scale) -> float:
-    """What points dominate up to the corner, as a share of what is the whole there."""
-    return float(moocore.hypervolume(scaled, ref=[CORNER] * scaled.shape[1])) / scale.whole
+class Indicator(ABC):
+    """One number for the points of a front. A new one is a class with a `name` and a `value`.
 
+    Every table, report, test and csv of benches and comparisons has a column for it as soon as it
+    is defined, in a `--plant-file` or anywhere in Python.
 
-def igd_plus(scaled: Array, scale: Scale) -> float:
-    """Mean distance by which the stations are missed."""
-    return float(moocore.igd_plus(scaled, ref=scale.stations))
-
-
-def epsilon_indicator(scaled: Array, scale: Scale) -> float:
-    """Least shift by which the points weakly dominate the stations."""
-    return float(moocore.epsilon_additive(scaled, ref=scale.stations))
-
-
-@dataclass(frozen=True)
-class Indicator:
-    """One number for a set of points.
-
-    Attributes
-    ----------
-    name : str
-        In columns of tables.
-    label : str
-        In headings.
-    unit : str
-        In which headings state it; empty for a plain number, "%" for a share of 1.
-    more_is_better : bool
-        Its direction: of a share that is to be 1, or of a distance that is to be 0.
-    meaning : str
-        In a sentence of a report, after the label.
-    of : callable
-        From the points that no other dominates, scaled, shape (n, objectives), and their `Scale`.
-    form : str
-        Format of its digits in tables of comparisons.
+    Raises
+    ------
+    ValueError
+        If the name of a subclass cannot head a column.
     """
 
-    name: str
-    label: str
-    unit: str
-    more_is_better: bool
-    meaning: str
-    of: Callable[[Array, Scale], float]
-    form: str = ".2g"
+    name: ClassVar[str]
+    """The column in tables."""
+    label: ClassVar[str]
+    """The heading; by default the name."""
+    unit: ClassVar[str] = ""
+    """The unit in headings: empty for a plain number, "%" for a share of 1."""
+    more_is_better: ClassVar[bool] = False
+    """True for a share that should be 1, False for a distance that should be 0."""
+    meaning: ClassVar[str]
+    """An explanation for reports; by default the first line of the docstring."""
+    form: ClassVar[str] = ".2g"
+    """The format of its digits in tables of comparisons."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        name = vars(cls).get("name")
+        if name is None:
+            return
+        with forgotten_if_refused(cls):
+            if not isinstance(name, str) or not name.isidentifier():
+                raise ValueError(
+                    f"name of the indicator {cls.__name__} is {quoted(name)}; give letters, digits "
+                    "and _, which head a column"
+                )
+            if cls.value is Indicator.value:
+                raise ValueError(
+                    f"indicator {name} measures nothing; define value(self, points, scale)"
+                )
+        if "label" not in vars(cls):
+            cls.label = name.replace("_", " ")
+        if "meaning" not in vars(cls):
+            first = (cls.__doc__ or cls.label).partition("\n")[0].rstrip(".")
+            cls.meaning = first[:1].lower() + first[1:]
+
+    @abstractmethod
+    def value(self, points: Array, scale: Scale) -> float:
+        """Return its value for the non-dominated points of a front.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, objectives)
+            The points, scaled from 0 at the ideal to 1 at the nadir.
+        scale : Scale
+            The scale; its `stations` are the points of the reference front.
+        """
 
     @property
     def of_nothing(self) -> float:
-        """Its value where there is no point."""
+        """Return its value for a front without points."""
         return 0.0 if self.more_is_better else nan
 
+    def __call__(self, points: Array, scale: Scale) -> float:
+        """Return its value as a number; ValueError if its code fails."""
+        try:
+            return float(self.value(points, scale))
+        except Exception as error:
+            if ships(type(self)):
+                raise
+            raise failed_in(f"indicator {self.name}", type(self), error) from error
 
-HYPERVOLUME = Indicator(
-    "hypervolume",
-    "hypervolume",
-    "%",
-    True,
-    "area that a front dominates, as a share, up to a tenth of the reference front's extent beyond "
-    "its ends",
-    hypervolume,
-    ".4f",
-)
-INDICATORS: Mapping[str, Indicator] = MappingProxyType(
-    {
-        indicator.name: indicator
-        for indicator in (
-            HYPERVOLUME,
-            Indicator(
-                "igd_plus",
-                "IGD+",
-                "",
-                False,
-                "mean distance by which the reference front is missed, in units of its extent",
-                igd_plus,
-            ),
-            Indicator(
-                "epsilon",
-                "additive epsilon",
-                "",
-                False,
-                "worst miss of the reference front, in units of its extent",
-                epsilon_indicator,
-            ),
+
+class Hypervolume(Indicator):
+    """What points dominate up to the corner, as a share of what is the whole there."""
+
+    name = "hypervolume"
+    unit = "%"
+    more_is_better = True
+    meaning = (
+        "area that a front dominates, as a share, up to a tenth of the reference front's extent "
+        "beyond its ends"
+    )
+    form = ".4f"
+
+    def value(self, points: Array, scale: Scale) -> float:
+        """The share."""
+        return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1])) / scale.whole
+
+
+class InvertedDistance(Indicator):
+    """Mean distance by which the stations are missed."""
+
+    name = "igd_plus"
+    label = "IGD+"
+    meaning = "mean distance by which the reference front is missed, in units of its extent"
+
+    def value(self, points: Array, scale: Scale) -> float:
+        """The mean."""
+        return float(moocore.igd_plus(points, ref=scale.stations))
+
+
+class AdditiveEpsilon(Indicator):
+    """Least shift by which the points weakly dominate the stations."""
+
+    name = "epsilon"
+    label = "additive epsilon"
+    meaning = "worst miss of the reference front, in units of its extent"
+
+    def value(self, points: Array, scale: Scale) -> float:
+        """The shift."""
+        return float(moocore.epsilon_additive(points, ref=scale.stations))
+
+
+def known_indicators() -> Mapping[str, Indicator]:
+    """Return all indicators by name: those of quietarm, then the user's own."""
+    return {name: _indicator_of(kind) for name, kind in known(Indicator).items()}
+
+
+def __getattr__(name: str) -> Any:
+    """Name the successor of a name of 2.0."""
+    if name == "INDICATORS":
+        raise AttributeError(
+            "INDICATORS is gone; give known_indicators(), and a new one as a class of Indicator"
         )
-    }
-)
-"""By name; every table, report and test has a column for each."""
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+@cache
+def _indicator_of(kind: type[Indicator]) -> Indicator:
+    """Return the only object of a class."""
+    return object_of(kind)
+
+
+HYPERVOLUME = _indicator_of(Hypervolume)
 
 
 def objectives(front: Front) -> Array:

@@ -1,4 +1,6 @@
 from .arm_on_flexible_link import ArmOnFlexibleLink as ArmOnFlexibleLink
+from .dimensions import Unit as Unit
+from .dimensions import Words as Words
 from .drawing import Body as Body
 from .drawing import flexible_link as flexible_link
 from .drawing import rigid_link as rigid_link
@@ -7,7 +9,6 @@ from .flexible_beam import FlexibleBeam as FlexibleBeam
 from .joint_motion import Expression as Expression
 from .joint_motion import JointMotion as JointMotion
 from .joint_motion import deg as deg
-from .joint_motion import joint_unit as joint_unit
 from .linear_axis import LinearAxis as LinearAxis
 from .plant import Plant as Plant
 from .plant import known_plants as known_plants

@@ -11,14 +11,14 @@ import numpy as np
 
 from quietarm.models.drawing import TIP_SLOPE, Body, flexible_link, rigid_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import TIP, Plant, parameter
+from quietarm.models.plant import DAMPING, TIP, Plant, parameter
 
 _LENGTH = 0.55
 """Of the link [m], section 3.2."""
 
 
-def _printed(value: float, unit: str, meaning: str) -> Any:
-    return parameter(value, unit, "eq (15)", meaning)
+def _printed(value: float, unit: str, meaning: str, kind: str | None = None) -> Any:
+    return parameter(value, unit, "eq (15)", meaning, kind)
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class ArmOnFlexibleLink(Plant):
     alpha2: float = _printed(-9.949e-3, "m", "push on the mode by the joint's acceleration")
     alpha3: float = _printed(5.256e-2, "m", "that push times the cosine of the joint's angle")
     alpha4: float = _printed(7.634e-2, "-", "drag on the mode by the turning arm")
-    zeta: float = _printed(1.500e-3, "-", "damping ratio of the mode")
+    zeta: float = _printed(1.500e-3, "-", "damping ratio of the mode", DAMPING)
     omega: float = _printed(7.320, "rad/s", "frequency of the mode, arm across the link")
     beta1: float = _printed(5.366e-3, "kg m^2", "inertia of the arm")
     beta2: float = _printed(-4.944e-3, "kg m", "torque by the mode's acceleration")

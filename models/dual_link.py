@@ -10,12 +10,14 @@ import numpy as np
 
 from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import TIP, Plant, parameter
+from quietarm.models.plant import DAMPING, TIP, Plant, parameter
 
 
-def _identified(theory: float, factor: float, unit: str, meaning: str) -> Any:
+def _identified(
+    theory: float, factor: float, unit: str, meaning: str, kind: str | None = None
+) -> Any:
     source = "theoretical value times identified factor, docs/physics.md"
-    return parameter(theory * factor, unit, source, meaning)
+    return parameter(theory * factor, unit, source, meaning, kind)
 
 
 @dataclass(frozen=True)
@@ -30,13 +32,13 @@ class DualLinkManipulator(Plant):
     modes: ClassVar[int] = 2
 
     omega1: float = _identified(12.68, 0.993, "rad/s", "frequency of link 1, hub held")
-    zeta1: float = _identified(15.49e-3, 1.214, "-", "damping ratio of link 1")
+    zeta1: float = _identified(15.49e-3, 1.214, "-", "damping ratio of link 1", DAMPING)
     a1: float = _identified(0.2266, 0.984, "m", "push on link 1 by the joint's acceleration")
     b1: float = _identified(
         2.004e-3, 1.020, "-", "stiffening of link 1 by the joint's speed squared"
     )
     omega2: float = _identified(10.71, 0.993, "rad/s", "frequency of link 2, hub held")
-    zeta2: float = _identified(14.27e-3, 1.071, "-", "damping ratio of link 2")
+    zeta2: float = _identified(14.27e-3, 1.071, "-", "damping ratio of link 2", DAMPING)
     a2: float = _identified(0.2570, 1.003, "m", "push on link 2 by the joint's acceleration")
     b2: float = _identified(
         5.822e-3, 1.006, "-", "stiffening of link 2 by the joint's speed squared"

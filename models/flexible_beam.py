@@ -15,7 +15,7 @@ from typing import ClassVar
 from quietarm.models.beam_modes import BeamModes, beam_modes
 from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import COUNT, Plant, parameter
+from quietarm.models.plant import COUNT, DAMPING, Plant, parameter
 
 _MOST_MODES = 6
 _NONE = "none by default"
@@ -39,7 +39,7 @@ class FlexibleBeam(Plant):
     name: ClassVar[str] = "flexible-beam"
 
     omega: float = parameter(10.43, "rad/s", "eq (10)", "first frequency, hub held, as measured")
-    zeta: float = parameter(9.636e-3, "-", "eq (10)", "damping ratio of every mode")
+    zeta: float = parameter(9.636e-3, "-", "eq (10)", "damping ratio of every mode", DAMPING)
     hub_inertia: float = parameter(
         5.0e-4, "kg m^2", "alpha1 of eq (10) less plate and tip", "of rotor, hub and the like"
     )

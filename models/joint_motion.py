@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Collection, Sequence
 from numbers import Real
 from typing import Any, NamedTuple
@@ -22,7 +21,6 @@ ROTARY = "rotary"
 """Kinds of joint."""
 MIXED = "mixed"
 """Of several joints that some turn and some slide."""
-_RADIANS = re.compile(r"\brad\b")
 
 
 def is_zero(entry: Expression) -> bool:
@@ -33,28 +31,6 @@ def is_zero(entry: Expression) -> bool:
 def kind_of_joints(kinds: Collection[str]) -> str:
     """Return the kind of several joints: theirs, or `MIXED`."""
     return next(iter(kinds)) if len(set(kinds)) == 1 else MIXED
-
-
-def joint_unit(unit: str, joint: str) -> str:
-    """Return a unit of a rotary joint as it is of a kind of joint: rad/s is m/s, N m is N.
-
-    Of `MIXED` joints both: rad/s or m/s.
-    """
-    plain = unit.replace("N m", "N").replace("kg m^2", "kg")
-    return _of_kind(unit, _RADIANS.sub("m", plain), joint)
-
-
-def joint_label(label: str, joint: str) -> str:
-    """Return a label of a rotary joint's quantity likewise: torque is force, angle position."""
-    linear = label.replace("joint torque", "drive force").replace("torque", "force")
-    return _of_kind(label, linear.replace("angle", "position"), joint)
-
-
-def _of_kind(rotary: str, linear: str, joint: str) -> str:
-    """The words for a kind of joint, or both."""
-    if joint == MIXED and rotary != linear:
-        return f"{rotary} or {linear}"
-    return rotary if joint == ROTARY else linear
 
 
 def deg(degrees: float) -> float:

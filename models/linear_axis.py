@@ -10,7 +10,7 @@ import numpy as np
 
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import COUNT, Plant, parameter
+from quietarm.models.plant import COUNT, DAMPING, Plant, parameter
 
 _MADE_UP = "made up: a gantry of 8 kg"
 
@@ -32,12 +32,12 @@ class LinearAxis(Plant):
     joint: ClassVar[str] = "linear"
 
     omega1: float = parameter(75.4, "rad/s", _MADE_UP, "frequency of mode 1, carriage held")
-    zeta1: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 1")
+    zeta1: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 1", DAMPING)
     share1: float = parameter(
         1.0, "-", _MADE_UP, "of the load's displacement that is mode 1, not effective mass"
     )
     omega2: float = parameter(150.0, "rad/s", _MADE_UP, "frequency of mode 2, carriage held")
-    zeta2: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 2")
+    zeta2: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 2", DAMPING)
     share2: float = parameter(
         0.0, "-", _MADE_UP, "of the load's displacement that is mode 2, not effective mass"
     )

@@ -14,7 +14,7 @@ from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any, ClassVar, Protocol, final
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, final
 
 import casadi as ca
 import numpy as np
@@ -23,20 +23,45 @@ from quietarm.models.drawing import Body, rigid_link
 from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
 from quietarm.models.notes import Note
+from quietarm.models.rates import rates_along
 from quietarm.models.validation import check_contract, check_passive
+
+if TYPE_CHECKING:
+    from quietarm.ocp import PointToPoint
 
 COUNT = "count"
 """Unit of a parameter that is a whole number."""
 TIP = "displacement of the tip per modal amplitude"
 """Meaning of a plant's phi, the mode shape at its tip."""
+FREQUENCY = "frequency"
+"""The kind of a parameter that is the frequency of a mode [rad/s]."""
+DAMPING = "damping"
+"""The kind of a parameter that is the damping ratio of a mode."""
+OTHER = "other"
+"""The kind of all other parameters."""
 
 
-def parameter(default: float, unit: str, source: str, meaning: str = "") -> Any:
-    """Declare a parameter of a plant, a field of its frozen dataclass; the default in SI units.
+def parameter(
+    default: float, unit: str, source: str, meaning: str = "", kind: str | None = None
+) -> Any:
+    """Declare a parameter of a plant, a field of its frozen dataclass.
 
-    The unit is ``"-"`` where there is none, the source an equation, a table or a reason.
+    Parameters
+    ----------
+    default : float
+        In SI units.
+    unit : str
+        ``"-"`` where there is none.
+    source, meaning : str
+        An equation, a table or a reason; what it is, in words.
+    kind : str, optional
+        ``"frequency"`` or ``"damping"``, the damping ratio of a mode, which recordings of a swing
+        tell; ``"other"``. By default a frequency where the unit is rad/s, and else other.
     """
-    return field(default=default, metadata={"unit": unit, "source": source, "meaning": meaning})
+    if kind not in (None, FREQUENCY, DAMPING, OTHER):
+        raise ValueError(f"kind is {kind!r}; give {FREQUENCY!r}, {DAMPING!r} or {OTHER!r}")
+    metadata = {"unit": unit, "source": source, "meaning": meaning, "kind": kind}
+    return field(default=default, metadata=metadata)
 
 
 def content(meaning: str) -> Any:
@@ -91,12 +116,12 @@ class Plant(ABC):
 
     A subclass sets `name` and `modes`, declares its parameters as float fields (with `parameter`)
     and gives three equations: `modal_accelerations`, `torque` and `tip_displacements`; see
-    `validate`. They may have no value at some angles; a move must not pass these.
+    `validate`. Their derivatives are CasADi's. They may have no value at some angles; a move must
+    not pass these.
 
     A plant of several joints moves along a path. What the equations are then given as the joint's
     angle is the place on the path; it gives `joints`, and `torques` in place of `torque`. Where the
-    tips' displacements depend on the place it gives `tips_at` and `tip_speeds` in place of
-    `tip_displacements`.
+    tips' displacements depend on the place it gives `tips_at` in place of `tip_displacements`.
 
     Raises
     ------
@@ -114,7 +139,7 @@ class Plant(ABC):
     """How many modal amplitudes the plant has."""
 
     joint: ClassVar[str] = ROTARY
-    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`joint_unit`). Of several
+    """The kind of joint: rotary, in rad and N m, or linear, in m and N (`Unit`). Of several
     joints theirs, or mixed; `joint_kinds` has each."""
     tip_unit: ClassVar[str] = "m"
     """Unit of the tips' displacements: m, or rad where they turn, as the load of a shaft does."""
@@ -208,8 +233,30 @@ class Plant(ABC):
         return self.tip_displacements(W)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
-        """Time derivatives of `tips_at` [`tip_unit`/s]; by default where the place has no part."""
-        return self.tip_displacements(dW)
+        """Time derivatives of `tips_at` [`tip_unit`/s], by default by CasADi.
+
+        Formulas of a plant's own may be faster; they are checked against CasADi's.
+        """
+        if self._tips_follow_the_modes:
+            return self.tip_displacements(dW)
+
+        def tips(path: JointMotion, W: Modes, _: Modes) -> Sequence[Expression]:
+            return self.tips_at(path, W)
+
+        return rates_along(tips, path, W, dW, [0.0] * self.modes)
+
+    def tip_accelerations(
+        self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes
+    ) -> Sequence[Expression]:
+        """Time derivatives of `tip_speeds` [`tip_unit`/s^2], likewise."""
+        if self._tips_follow_the_modes:
+            return self.tip_displacements(ddW)
+        return rates_along(self.tip_speeds, path, W, dW, ddW)
+
+    @property
+    def _tips_follow_the_modes(self) -> bool:
+        """Whether the tips' displacements are the same everywhere on the path."""
+        return type(self).tips_at is Plant.tips_at
 
     @property
     def in_full(self) -> FullEquations | None:
@@ -303,9 +350,33 @@ class Plant(ABC):
 
     @classmethod
     @final
+    def parameter_kinds(cls) -> dict[str, str]:
+        """The parameters' kinds by name: frequency, damping or other."""
+        return {entry.name: _kind_of(entry) for entry in cls.parameter_fields()}
+
+    @classmethod
+    @final
     def parameter_fields(cls) -> tuple[Field[Any], ...]:
         """The fields that are parameters: all but `content`."""
         return tuple(entry for entry in fields(cls) if "content" not in entry.metadata)
+
+    @property
+    def limits(self) -> Mapping[str, Any]:
+        """Limits that its tasks have, by quantity, as {"speed": 3.0}, or by joint; none by default.
+
+        Each is as of `PointToPoint`.
+        """
+        return {}
+
+    @final
+    def task(self, target: float, duration: float, **others: Any) -> PointToPoint:
+        """The move to a target within the plant's own limits; other keywords of `PointToPoint`.
+
+        A limit that is given is in the place of the plant's own of that quantity.
+        """
+        import quietarm  # the name over all packages: models know of tasks what they are called
+
+        return quietarm.PointToPoint.of(self, target, duration, **others)
 
     @property
     def measured(self) -> dict[str, float]:
@@ -333,6 +404,14 @@ class Plant(ABC):
         """
         check_contract(self)
         check_passive(self)
+
+
+def _kind_of(entry: Field[Any]) -> str:
+    """The kind of a parameter, as its field declares it."""
+    declared = entry.metadata.get("kind")
+    if declared is None:
+        return FREQUENCY if entry.metadata.get("unit") == "rad/s" else OTHER
+    return declared
 
 
 def known_plants() -> dict[str, type[Plant]]:

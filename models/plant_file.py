@@ -6,15 +6,16 @@ import copyreg
 import hashlib
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from inspect import isabstract
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import words_of_error
+from quietarm.models.number_checks import words_of_error
 from quietarm.models.plant import Plant
 
 
@@ -32,13 +33,23 @@ class PlantFile:
 
 
 _file_of: dict[type[Plant], PlantFile] = {}
+_module_of: dict[bytes, tuple[ModuleType, PlantFile]] = {}
+"""The module of every file that was run, by its content."""
+_added: list[object] = []
+"""Entries of one's own that are no classes, as quantities and figures."""
+
+
+def note_added(entry: object) -> None:
+    """Note an entry of one's own: a file that adds one is a plant file without a plant, too."""
+    _added.append(entry)
 
 
 @interruptible
 def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
-    """Run a Python file that you trust, and make its plants known by name.
+    """Run a Python file that you trust, and make what it defines known by name.
 
-    Profiles and energies that stand beside them are known as well.
+    Its plants, and profiles, energies, searches, indicators, formats and panels, with or without
+    a plant.
 
     Parameters
     ----------
@@ -53,7 +64,7 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
     Raises
     ------
     ValueError
-        When it cannot be read or imported, or defines no plant that is complete.
+        When it cannot be read or imported, or defines nothing that is complete.
     """
     if not isinstance(path, str | Path):
         raise TypeError(f"path is {path!r}; give the name of a Python file, as 'plants.py'")
@@ -77,42 +88,92 @@ def file_of_plant(plant: type[Plant]) -> PlantFile | None:
     return _file_of.get(plant)
 
 
+class WithPlantFiles:
+    """A function that goes to another process together with the user's files that are loaded here.
+
+    What they define beside plants, such as a search, is known there by its name as well.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    def __call__(self, *arguments: Any) -> Any:
+        """What the function gives."""
+        return self._function(*arguments)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        files = _Loaded(file for _, file in _module_of.values())
+        return _second, (files, self._function)  # in this order, as they were loaded here
+
+
+class _Loaded(tuple[PlantFile, ...]):
+    """Files that are run where they arrive."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _load_all, (tuple(self),)
+
+
+def _load_all(files: Iterable[PlantFile]) -> _Loaded:
+    for file in files:
+        _plants_of(file)
+    return _Loaded(files)
+
+
+def _second(files: _Loaded, function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function, once the files are loaded."""
+    del files
+    return function
+
+
 def _plants_of(file: PlantFile) -> Mapping[str, type[Plant]]:
     """The plants of a file by name, from now on known everywhere."""
-    plants = {plant.name: plant for plant, of in _file_of.items() if of.source == file.source}
-    if not plants:
-        known = dict(Plant._known)
+    if file.source not in _module_of:
+        before = dict(Plant._known)
         try:
-            plants = _run(file)
+            _module_of[file.source] = _run(file), file
         except BaseException:
-            Plant._known = known
+            Plant._known = before
             raise
+    module, _ = _module_of[file.source]
+    plants = {kind.name: kind for kind in _classes_of(module) if issubclass(kind, Plant)}
     for plant in plants.values():
         copyreg.pickle(plant, _to_other_process)  # which could not import it by name
         _file_of[plant] = file  # by the name that it was given last
-    for kind in _classes_beside(plants):
-        copyreg.pickle(kind, partial(_value_to_other_process, file))
+    for kind in _classes_of(module):
+        if not issubclass(kind, Plant):
+            copyreg.pickle(kind, partial(_value_to_other_process, file))
     Plant._known.update(plants)
     return plants
 
 
-def _classes_beside(plants: Mapping[str, type[Plant]]) -> Iterator[type[object]]:
-    """What else the file of these plants defines, as profiles and energies."""
-    module = _module_of(plants)
+def _classes_of(module: ModuleType) -> Iterator[type[Any]]:
+    """What a file defines that is complete: plants, profiles, energies."""
     for kind in vars(module).values():
         defined_there = isinstance(kind, type) and kind.__module__ == module.__name__
-        if defined_there and not issubclass(kind, Plant):
+        if defined_there and not (issubclass(kind, Plant) and _is_incomplete(kind)):
             yield kind
 
 
-def _module_of(plants: Mapping[str, type[Plant]]) -> ModuleType:
-    """The module of the file that these plants are of."""
-    return sys.modules[next(iter(plants.values())).__module__]
+def _has_only_unfinished(module: ModuleType) -> bool:
+    """Whether a file defines plants, and none of them is complete."""
+    kinds = [kind for kind in vars(module).values() if isinstance(kind, type)]
+    plants = [
+        kind for kind in kinds if issubclass(kind, Plant) and kind.__module__ == module.__name__
+    ]
+    return bool(plants) and all(map(_is_incomplete, plants))
 
 
-def _run(file: PlantFile) -> dict[str, type[Plant]]:
-    """The plants that the module of a file defines; ValueError with the line where it fails."""
+def _is_incomplete(plant: type[Plant]) -> bool:
+    """Whether a plant is a base of others."""
+    return isabstract(plant) or not isinstance(vars(plant).get("name"), str)
+
+
+def _run(file: PlantFile) -> ModuleType:
+    """The module of a file; ValueError with the line where it fails, or where it has nothing."""
     module = ModuleType(f"plant file {file.path}, {file.digest}")
+    added_before = len(_added)
     sys.modules[module.__name__] = module  # dataclasses look their annotations up there
     module.__file__ = file.path
     sys.path.append(folder := str(Path(file.path).resolve().parent))  # it may import its neighbour
@@ -135,17 +196,16 @@ def _run(file: PlantFile) -> dict[str, type[Plant]]:
         ) from None
     finally:
         sys.path.remove(folder)
-    plants = {
-        name: plant
-        for name, plant in Plant._known.items()
-        if plant.__module__ == module.__name__ and not isabstract(plant)
-    }
-    if not plants:
+    ours = f"{__name__.partition('.')[0]}."
+    kinds = list(_classes_of(module))
+    bases = {base.__module__ for kind in kinds for base in kind.__mro__[1:]}
+    has_own = len(_added) > added_before or any(base.startswith(ours) for base in bases)
+    if not has_own or _has_only_unfinished(module):
         raise ValueError(
             f"plant file {file.path} defines no plant; write a class of models.Plant in it, with a "
             f"name, modes, {', '.join(sorted(Plant.__abstractmethods__))}"
         )
-    return plants
+    return module
 
 
 def _to_other_process(plant: Plant) -> tuple[Callable[..., Plant], tuple[object, ...]]:
@@ -163,7 +223,8 @@ def _value_to_other_process(
 
 
 def _value_from_other_process(file: PlantFile, kind: str, entries: Mapping[str, object]) -> object:
-    value_class = vars(_module_of(_plants_of(file)))[kind]
+    _plants_of(file)
+    value_class = vars(_module_of[file.source][0])[kind]
     value = object.__new__(value_class)
     vars(value).update(entries)
     return value

@@ -8,14 +8,14 @@ from typing import Any, ClassVar
 
 from quietarm.models.drawing import Body, flexible_link
 from quietarm.models.joint_motion import Expression, JointMotion, Modes
-from quietarm.models.plant import TIP, Plant, parameter
+from quietarm.models.plant import DAMPING, TIP, Plant, parameter
 
 _LENGTH = 0.475
 """Of the plate [m], section 3.1."""
 
 
-def _printed(value: float, unit: str, meaning: str) -> Any:
-    return parameter(value, unit, "eq (10)", meaning)
+def _printed(value: float, unit: str, meaning: str, kind: str | None = None) -> Any:
+    return parameter(value, unit, "eq (10)", meaning, kind)
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class SingleLinkManipulator(Plant):
     c: float = _printed(3.091e-2, "N m s", "viscous friction of the joint")
     beta1: float = _printed(2.555e-1, "m", "push on the mode by the joint's acceleration")
     beta2: float = _printed(2.614e-1, "-", "stiffening by the joint's speed squared")
-    zeta: float = _printed(9.636e-3, "-", "damping ratio of the mode")
+    zeta: float = _printed(9.636e-3, "-", "damping ratio of the mode", DAMPING)
     omega: float = _printed(10.43, "rad/s", "frequency of the mode, hub held")
     phi: float = parameter(
         2.28, "-", "not printed: by the cycloid's residual of 'about 7.7 cm', docs/physics.md", TIP

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 
-from quietarm.models.checks import quoted
+from quietarm.models.number_checks import quoted
 
 _NUMBER = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*(?:rad)?")

@@ -22,9 +22,9 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models import at_rest
-from quietarm.models.checks import words_of_error
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array, Expression, JointMotion
+from quietarm.models.number_checks import words_of_error
 
 if TYPE_CHECKING:
     from quietarm.models.plant import Plant
@@ -37,6 +37,7 @@ _WRITE = {
     "torques": "(self, path, W, dW, ddW) that returns a list of torques [N m], one a joint",
     "tips_at": "(self, path, W) that returns a list of tip displacements [m]",
     "tip_speeds": "(self, path, W, dW) that returns a list of tip speeds [m/s]",
+    "tip_accelerations": "(self, path, W, dW, ddW) that returns tip accelerations [m/s^2]",
 }
 """What every method takes, and what it should return."""
 _RIGHT = math.pi / 2
@@ -282,13 +283,12 @@ def _check_rates(plant: Plant) -> None:
     By the chain rule along the path: a time derivative is that by the place, times its speed, and
     so on; the path's jerk stands for the time derivative of its acceleration.
     """
-    size = 4 + 2 * plant.modes
+    size = 4 + 3 * plant.modes
     x = ca.SX.sym("x", size)
     path = JointMotion(*ca.vertsplit(x[:4]))
-    W = x[4 : 4 + plant.modes]
-    dW = x[4 + plant.modes :]
-    moving = ca.vertcat(path.angle, path.speed, path.acceleration, W)
-    rates = ca.vertcat(path.speed, path.acceleration, path.jerk, dW)
+    W, dW, ddW = (x[4 + i * plant.modes : 4 + (i + 1) * plant.modes] for i in range(3))
+    moving = ca.vertcat(path.angle, path.speed, path.acceleration, W, dW)
+    rates = ca.vertcat(path.speed, path.acceleration, path.jerk, dW, ddW)
     pairs = list[tuple[str, Expression, Expression]]()
     if _gives(plant, "joints"):
         for joint in _call(plant, "joints", path):
@@ -301,15 +301,17 @@ def _check_rates(plant: Plant) -> None:
                         "give it",
                     )
                 pairs.append(("joints", value, rate))
-    if _gives(plant, "tips_at") or _gives(plant, "tip_speeds"):
-        amplitudes = ca.vertsplit(W)
-        speeds = ca.vertsplit(dW)
-        tips = _tips(plant, path, amplitudes)
-        tip_speeds = _call(plant, "tip_speeds", path, amplitudes, speeds)
-        if len(tips) != len(tip_speeds):
-            what = f"returns {len(tip_speeds)} speeds of {len(tips)} tips"
-            raise _wrong(plant, "tip_speeds", what, "give one for every tip")
-        pairs += (("tip_speeds", tip, speed) for tip, speed in zip(tips, tip_speeds))
+    modes = [ca.vertsplit(part) for part in (W, dW, ddW)]
+    tips = _tips(plant, path, modes[0])
+    for order, method in enumerate(("tip_speeds", "tip_accelerations"), start=1):
+        if not _gives(plant, method):  # they are CasADi's
+            continue
+        before = tips if order == 1 else _call(plant, "tip_speeds", path, *modes[:2])
+        given = _call(plant, method, path, *modes[: order + 1])
+        if len(tips) != len(given):
+            what = f"returns {len(given)} of {len(tips)} tips"
+            raise _wrong(plant, method, what, "give one for every tip")
+        pairs += ((method, value, rate) for value, rate in zip(before, given))
     if not pairs:
         return
     angles = _angles_of(plant)

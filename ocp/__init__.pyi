@@ -9,6 +9,13 @@ from .errors import InfeasibleTaskError as InfeasibleTaskError
 from .errors import QuietarmError as QuietarmError
 from .errors import SolverFailedError as SolverFailedError
 from .errors import SolveStatus as SolveStatus
+from .figures import FIGURES as FIGURES
+from .figures import Figure as Figure
+from .figures import Figures as Figures
+from .figures import add_figure as add_figure
+from .figures import final as final
+from .figures import remove_figure as remove_figure
+from .figures import rms as rms
 from .floor.energy_floor import Floor as Floor
 from .floor.energy_floor import energy_floor as energy_floor
 from .front.cross_check import CrossCheck as CrossCheck
@@ -24,6 +31,10 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
+from .limits import QUANTITIES as QUANTITIES
+from .limits import Quantity as Quantity
+from .limits import add_quantity as add_quantity
+from .limits import remove_quantity as remove_quantity
 from .planning.correct import correct_in_full as correct_in_full
 from .planning.fastest import Fastest as Fastest
 from .planning.fastest import fastest_move as fastest_move
@@ -45,7 +56,6 @@ from .profiles.term_profile import MAX_TERMS as MAX_TERMS
 from .profiles.term_profile import TermProfile as TermProfile
 from .record import Record as Record
 from .record import Verification as Verification
-from .robustness import Figures as Figures
 from .robustness import Robustness as Robustness
 from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep
@@ -54,7 +64,6 @@ from .robustness import evaluate_robustness as evaluate_robustness
 from .simulation.evaluator import Evaluation as Evaluation
 from .simulation.evaluator import Evaluator as Evaluator
 from .simulation.free_vibration import FreeVibration as FreeVibration
-from .simulation.objective import Motion as Motion
 from .simulation.rollout import SymbolicRollout as SymbolicRollout
 from .simulation.rollout import symbolic_rollout as symbolic_rollout
 from .simulation.trajectory import Trajectory as Trajectory

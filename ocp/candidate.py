@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import inf
 from typing import Any, ClassVar
 
 import casadi as ca
@@ -19,16 +20,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.checks import numbers, quoted, takes
-from quietarm.ocp.limits import JERK, QUANTITIES, RESIDUAL, Quantity, Ranged
+from quietarm.ocp.figures import Figures
+from quietarm.ocp.limits import JERK, RESIDUAL, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.sample import Sample
+from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS
 from quietarm.ocp.simulation.cvodes import Integration, integrate, integrate_to
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.full_dynamics import FullFigures, follow_in_full, times_after
 from quietarm.ocp.simulation.mesh import Mesh
-from quietarm.ocp.simulation.objective import PEAKS, Motion
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
@@ -128,41 +131,58 @@ class Candidate(Ranged):
         return np.array([motion._run.arrival for motion in self.scenarios])
 
     @cached_property
-    def motion(self) -> Motion:
-        """All values; peaks include those between the samples."""
-        task = self.task
-        joint = self._samples.motion
-        past_target = (self._largest(joint.angle[None]) - task.target) * np.sign(task.span)
-        known = {
-            quantity.name: self._range(quantity)
-            for quantity in QUANTITIES.values()
-            if quantity.derivative != JERK or self.path.has_jerk
-        }
-        peaks = {
-            QUANTITIES[name].peak: max(-least, largest)
-            for name, (least, largest) in known.items()
-            if QUANTITIES[name].peak in PEAKS
-        }
-        ranges = {name: sides for name, sides in known.items() if f"peak_{name}" not in peaks}
-        by_direction = [
-            limit.quantity
-            for limit in task.limits
-            if not limit.is_peak and (limit.name not in QUANTITIES or limit.name in known)
-        ]
-        ranges |= {quantity.name: self._range(quantity) for quantity in by_direction}
-        return Motion(
-            residual=self.residual,
-            energy=self.energy,
-            net_work=self._run.net_work,
-            overshoot=max(0.0, float(past_target.max())),
-            ranges=ranges,
-            **peaks,
-        )
+    def figures(self) -> Figures:
+        """All figures by name, as of `FIGURES`; peaks include those between the samples."""
+        return Figures(candidate=self)
+
+    @property
+    def motion(self) -> Figures:
+        """The same, by the name that they had in 2.0."""
+        return self.figures
+
+    @property
+    def net_work(self) -> float:
+        """Integral of torque * speed over the move [J]: dissipated and stored energy."""
+        return self._run.net_work
+
+    @property
+    def overshoot(self) -> float:
+        """How far the joint exceeds the target [rad], 0 if it does not."""
+        past_target = self._largest(self.moving.path.angle[None]) - self.task.target
+        return max(0.0, float((past_target * np.sign(self.task.span)).max()))
+
+    @property
+    def moving(self) -> Sample:
+        """Everything on the way, an array over the samples of the quadrature for each value."""
+        return self._samples.sample
+
+    @cached_property
+    def weights(self) -> NDArray[np.float64]:
+        """Weights of these samples [s]: sums of weight times value are integrals over the move."""
+        of_a_step = np.outer(self._mesh.lengths, GAUSS_WEIGHTS).ravel()
+        of_a_piece = np.concatenate([[0.0], of_a_step, [0.0]])  # the ends are no nodes
+        return np.outer(self.path.arguments[-1], of_a_piece).ravel()
 
     def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """As of `Ranged`, of residual and limited quantities."""
-        of_residual = -self.residual, self.residual
-        return of_residual if quantity.name == RESIDUAL else self.motion.range_of(quantity)
+        """As of `Ranged`; of a quantity that the motion does not have infinite."""
+        if quantity.name == RESIDUAL:
+            return -self.residual, self.residual
+        if quantity not in self._known_ranges:
+            has_it = quantity.derivative != JERK or self.path.has_jerk
+            self._known_ranges[quantity] = self._range(quantity) if has_it else (-inf, inf)
+        return self._known_ranges[quantity]
+
+    @cached_property
+    def _known_ranges(self) -> dict[Quantity, tuple[float, float]]:
+        return {}
+
+    def values_of(self, quantity: Quantity) -> NDArray[np.float64]:
+        """Return the values of a quantity over the samples of `moving`, a row each."""
+        return np.array(quantity.values(self.moving))
+
+    def peak_of_rows(self, rows: Sequence[NDArray[np.float64]]) -> float:
+        """Return the largest absolute value of rows over these samples, between them as well."""
+        return float(np.abs(self._largest(np.array(rows))).max())
 
     def peaks_of_joints(self, quantity: Quantity) -> NDArray[np.float64]:
         """Return the largest absolute value of a quantity of the joints, of each of them."""
@@ -176,7 +196,7 @@ class Candidate(Ranged):
 
     def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
         """The same of each of its values on this plant."""
-        return self._largest(np.array(quantity.values(self._samples.sample)))
+        return self._largest(self.values_of(quantity))
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Least and largest value of each row of samples."""
@@ -218,7 +238,7 @@ class Candidate(Ranged):
         later = np.linspace(0.0, vibration.window, samples)
         outputs = np.hstack([self._run.outputs, self._after(later)])
         times = np.append(times, self.task.duration + later)
-        return Trajectory.from_outputs(self.task.plant, times, outputs)
+        return Trajectory.from_outputs(self._plant, times, outputs)
 
     def sample(self, times: ArrayLike) -> Trajectory:
         """Sample a motion along a profile.
@@ -246,11 +266,10 @@ class Candidate(Ranged):
         moving = at[at <= duration]
         later = at[at > duration] - duration
         fractions, places = np.unique(np.append(moving / duration, [0.0, 1.0]), return_inverse=True)
-        plant = self.task.plant
         initial = self.task.initial_state
-        outputs = integrate_to(plant, self.errors, self.path, initial, fractions)
+        outputs = integrate_to(self.task.plant, self.errors, self.path, initial, fractions)
         outputs = np.hstack([outputs[:, places[:-2]], self._after(later)])
-        return Trajectory.from_outputs(plant, at, outputs)
+        return Trajectory.from_outputs(self._plant, at, outputs)
 
     @cached_property
     def _run(self) -> Integration:
@@ -301,7 +320,7 @@ class Candidate(Ranged):
         """Everything on the way, at the samples of the quadrature."""
         outputs = self._run.outputs
         return Trajectory.from_outputs(
-            self.task.plant,
+            self._plant,
             np.zeros(outputs.shape[1]),
             outputs,
         )

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import inspect
 import reprlib
-from collections.abc import Callable, Collection, Iterable, Mapping, Set
+import sys
+import traceback
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
+from contextlib import contextmanager
 from dataclasses import is_dataclass
 from functools import wraps
 from os import PathLike
@@ -15,7 +18,7 @@ from msgspec import Meta
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import (
+from quietarm.models.number_checks import (
     clipped,
     cut,
     finite,
@@ -44,7 +47,9 @@ __all__ = [
     "clipped",
     "count_of",
     "cut",
+    "failed_in",
     "finite",
+    "forgotten_if_refused",
     "has_no",
     "hashable",
     "install",
@@ -55,9 +60,11 @@ __all__ = [
     "nearest_name",
     "not_negative",
     "numbers",
+    "object_of",
     "positive",
     "quoted",
     "several",
+    "ships",
     "spelling",
     "table_of",
     "takes",
@@ -145,6 +152,13 @@ def _construction(kind: type[Any]) -> str:
     return f"{kind.__name__}({', '.join(_needed(kind))})"
 
 
+def object_of(kind: Any) -> Any:
+    """Make an object of a class without arguments; ValueError if it needs some."""
+    if needed := _needed(kind):
+        raise ValueError(f"{kind.__name__} needs {', '.join(needed)}; give each a default")
+    return kind()
+
+
 def _needed(kind: type[Any]) -> list[str]:
     """Arguments without which no object of a class is made."""
     parameters = inspect.signature(kind).parameters.items()
@@ -217,7 +231,7 @@ def known(family: type[T]) -> dict[str, type[T]]:
         name = vars(kind).get("name")
         if not isinstance(name, str):
             continue
-        if name in classes and _ships(classes[name]) and not _ships(kind):
+        if name in classes and ships(classes[name]) and not ships(kind):
             raise ValueError(
                 f"name {quoted(name)} of {kind.__name__} is that of quietarm's "
                 f"{classes[name].__name__}; give {kind.__name__} another"
@@ -231,12 +245,31 @@ def _descendants(family: type[T]) -> list[type[T]]:
     descendants: list[type[T]] = []
     for kind in family.__subclasses__():
         descendants += [kind, *_descendants(kind)]
-    return sorted(descendants, key=lambda kind: not _ships(kind))
+    return sorted(descendants, key=lambda kind: not ships(kind))
 
 
-def _ships(kind: type[Any]) -> bool:
+def ships(kind: type[Any]) -> bool:
     """Whether a class comes with quietarm."""
     return kind.__module__.startswith("quietarm.")
+
+
+@contextmanager
+def forgotten_if_refused(kind: Any) -> Iterator[None]:
+    """Take the name from a class whose definition is refused: it may live on, and is not known."""
+    try:
+        yield
+    except ValueError:
+        kind.name = None
+        raise
+
+
+def failed_in(what: str, kind: type[Any], error: BaseException) -> ValueError:
+    """What to raise where lines of a user's own class fail: what, where and why, in one line."""
+    file = getattr(sys.modules.get(kind.__module__), "__file__", None)
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == file]
+    place = f" ({file}, line {lines[-1]})" if lines else ""
+    return ValueError(f"{what}{place} fails: {words_of_error(error)}; mend it")
 
 
 NotNegative = Annotated[float, Meta(ge=0)]

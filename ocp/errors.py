@@ -72,8 +72,8 @@ _TEXTS = {
     "decreased any more; more steps or another seed may improve it.",
     SolveStatus.INFEASIBLE: "The solver converged to an infeasible motion; allow a larger "
     "residual, wider limits, a longer duration or more terms.",
-    SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; try another seed, more starts "
-    "or a bound on the coefficients.",
+    SolveStatus.ITERATION_LIMIT: "The solver ran out of iterations; allow it more, or try another "
+    "seed, more starts or a bound on the coefficients.",
     SolveStatus.NUMERICAL_TROUBLE: "The solver failed numerically; try another seed, fewer terms "
     "or a bound on the coefficients.",
     SolveStatus.SUPERSEDED: "The solver stopped this start: another one led to an energy as low.",

@@ -6,30 +6,63 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.models import Expression, Plant
-from quietarm.models.joint_motion import MIXED, ROTARY, joint_label, joint_unit
-from quietarm.ocp.checks import not_negative, quoted
+from quietarm.models import Expression, Plant, SingleLinkManipulator
+from quietarm.models.dimensions import (
+    ACCELERATION,
+    EFFORT,
+    NO_WORDS,
+    NONE,
+    SPEED,
+    TIP,
+    TORQUE,
+    Unit,
+    Words,
+    words_of,
+)
+from quietarm.models.dimensions import JERK as OF_JERK
+from quietarm.models.joint_motion import MIXED, ROTARY
+from quietarm.models.plant_file import note_added
+from quietarm.ocp.checks import instance, not_negative, quoted, takes, words_of_error
 from quietarm.ocp.sample import Sample, symbolic_sample
 
+REPORT = "report"
+NOTEBOOK = "notebook"
+PAGE = "page"
+COMPARISON = "comparison"
+FRONT = "front"
+FILE = "file"
+EXPORT = "export"
+CAPTION = "caption"
+PLACES = frozenset({REPORT, NOTEBOOK, PAGE, COMPARISON, FRONT, FILE, EXPORT, CAPTION})
+"""Where figures stand: rows of a command, a notebook's table, the page to drag, the table of
+`compare`, csv and tables of a front, `stated` of a file, source that is exported, captions."""
 ValuesOf = Callable[[Sample], Sequence[Expression]]
 """A quantity's values by the sample of a plant."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity that a task may limit.
+    """A quantity that a task may limit: an entry of `QUANTITIES`, and one's own by `add_quantity`.
 
     Attributes
     ----------
-    name, unit, label : str
-        Its name, SI unit of a rotary joint, and what it is in words.
+    name : str
+        Its name: its limit is ``<name>_limit``, its peak ``peak_<name>``.
+    unit : Unit
+        Its SI unit, as `WAY / SECOND**2`.
+    label : Words
+        What it is, where the joint turns and where it slides.
     values : callable
         Its values by the sample of a plant.
+    words : Words
+        What messages call it; by default its name.
     derivative : int or None
         Which time derivative of the joint's angle it is; None where it follows from the modes.
     of_joints : bool
@@ -40,20 +73,31 @@ class Quantity:
         Its place among the panels of a picture, from the joint's motion to the torque.
     always_drawn : bool
         Whether a picture of a motion has it where no task limits it, too.
-    joint : str
-        The kind of joint whose unit and label these are.
+    shown : frozenset of str
+        Where its peak stands, some of `PLACES`.
     """
 
+    example: ClassVar[str] = (
+        "a quantity, as Quantity('tip_speed', TIP / SECOND, Words('tip speed'), of_sample)"
+    )
+
     name: str
-    unit: str
-    label: str
+    unit: Unit
+    label: Words
     values: ValuesOf
+    words: Words = NO_WORDS
     derivative: int | None = None
     of_joints: bool = False
     in_scenarios: bool = False
     panel: int = 5
     always_drawn: bool = False
-    joint: str = ROTARY
+    shown: frozenset[str] = frozenset({REPORT, NOTEBOOK, PAGE, COMPARISON})
+
+    def __post_init__(self) -> None:
+        instance("unit", self.unit, Unit)
+        instance("label", self.label, Words)
+        if self.words == NO_WORDS:
+            object.__setattr__(self, "words", words_of(self.name.replace("_", " ")))
 
     @property
     def limit(self) -> str:
@@ -67,103 +111,164 @@ class Quantity:
 
     @property
     def peak(self) -> str:
-        """Name of its largest absolute value among a motion's diagnostics."""
+        """Name of its largest absolute value among the figures of a motion."""
         return f"peak_{self.name}"
+
+    @property
+    def joint(self) -> str:
+        """The kind of joint whose unit and words these are."""
+        return self.unit.joint
 
     def rows(self, plant: Plant) -> int:
         """How many values it has at one time."""
         return len(self.values(symbolic_sample(plant)))
 
+    @lru_cache(maxsize=256)  # noqa: B019 (of few values, which are kept anyway)
+    def on(self, joint: str, tip_unit: str) -> Quantity:
+        """The same in the units and words of a kind of joint, and of tip."""
+        return replace(
+            self,
+            unit=self.unit.on(joint, tip_unit),
+            label=self.label.on(joint),
+            words=self.words.on(joint),
+        )
 
-QUANTITIES: Mapping[str, Quantity] = {
+
+_quantities: dict[str, Quantity] = {
     quantity.name: quantity
     for quantity in (
         Quantity(
             name="torque",
-            unit="N m",
-            label="joint torque",
+            unit=EFFORT,
+            label=Words("joint torque", "drive force"),
             values=lambda sample: sample.torques,
             of_joints=True,
             panel=6,
             always_drawn=True,
+            shown=frozenset({REPORT, NOTEBOOK, PAGE, COMPARISON}),
         ),
         Quantity(
             name="speed",
-            unit="rad/s",
-            label="joint speed",
+            unit=SPEED,
+            label=Words("joint speed"),
             values=lambda sample: [joint.speed for joint in sample.joints],
             derivative=1,
             of_joints=True,
             panel=1,
             always_drawn=True,
+            shown=frozenset({REPORT, NOTEBOOK}),
         ),
         Quantity(
             name="acceleration",
-            unit="rad/s^2",
-            label="joint acceleration",
+            unit=ACCELERATION,
+            label=Words("joint acceleration"),
             values=lambda sample: [joint.acceleration for joint in sample.joints],
             derivative=2,
             of_joints=True,
             panel=2,
             always_drawn=True,
+            shown=frozenset({REPORT, NOTEBOOK, COMPARISON}),
         ),
         Quantity(
             name="jerk",
-            unit="rad/s^3",
-            label="joint jerk",
+            unit=OF_JERK,
+            label=Words("joint jerk"),
             values=lambda sample: [joint.jerk for joint in sample.joints],
             derivative=3,
             of_joints=True,
             panel=3,
+            shown=frozenset({REPORT}),
         ),
         Quantity(
             name="deflection",
-            unit="m",
-            label="tip displacement",
+            unit=TIP,
+            label=Words("tip displacement"),
             values=lambda sample: sample.tips,
             in_scenarios=True,
             panel=4,
             always_drawn=True,
+            shown=frozenset({REPORT, PAGE}),
         ),
     )
 }
-"""Every quantity by its name. A new one is one entry here, and the field of its limit in
-`PointToPoint`; solvers, checks, options, pictures and reports read both."""
+_OWN = frozenset(_quantities)
+QUANTITIES: Mapping[str, Quantity] = MappingProxyType(_quantities)
+"""Every quantity by its name. A new one is one entry here, or `add_quantity` in a file of one's
+own: tasks, solvers, checks, options, objectives, figures, pictures, reports and files read it."""
 
 
-def unit_of(unit: str, joint: str, tip_unit: str) -> str:
-    """A unit as it is of a kind of joint, or of tip: of tips m and m/s, or rad and rad/s."""
-    return tip_unit + unit[1:] if unit.startswith("m") else joint_unit(unit, joint)
+@takes(quantity=Quantity)
+def add_quantity(quantity: Quantity) -> Quantity:
+    """Make a quantity of one's own known: to tasks, commands, fronts, pictures, reports and files.
+
+    A file of one's own, as of ``--plant-file``, calls it; whatever loads files of such a task does
+    so first. An entry of the same name that was added before is replaced.
+
+    Raises
+    ------
+    ValueError
+        When the name is taken by quietarm, or is none of Python, or its function fails.
+    """
+    name = quantity.name
+    if name in _OWN or name in _RESERVED:
+        raise ValueError(f"the quantity {name!r} is quietarm's own; give yours another name")
+    if not name.isidentifier() or name != name.lower():
+        raise ValueError(
+            f"the name of a quantity is {quoted(name)}; give letters, digits and _, as tip_speed"
+        )
+    _check_values(quantity)
+    _quantities[name] = quantity
+    note_added(quantity)
+    return quantity
 
 
-@lru_cache
+def _check_values(quantity: Quantity) -> None:
+    """Refuse a quantity whose function fails, or gives no values; ValueError says where."""
+    try:
+        values = list(quantity.values(symbolic_sample(SingleLinkManipulator())))
+    except Exception as error:  # of a function of one's own
+        raise ValueError(
+            f"the quantity {quantity.name!r} fails for a plant of one joint and one tip "
+            f"({words_of_error(error)}); give a function of a Sample, as "
+            "lambda sample: sample.tip_speeds"
+        ) from None
+    if not values or not all(isinstance(value, ca.SX | float | int) for value in values):
+        raise ValueError(
+            f"the quantity {quantity.name!r} returns {quoted(values)}; give a list of values, as "
+            "sample.tip_speeds"
+        )
+
+
+@takes()
+def remove_quantity(name: str) -> None:
+    """Forget a quantity that was added, as at the end of a test; nothing where there is none."""
+    if name not in _OWN:
+        _quantities.pop(name, None)
+
+
 def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
     """The same in a plant's units: metres and newtons of a linear joint, rad where a tip turns."""
-    return {
-        name: replace(
-            quantity,
-            unit=unit_of(quantity.unit, joint, tip_unit),
-            label=joint_label(quantity.label, joint),
-            joint=joint,
-        )
-        for name, quantity in QUANTITIES.items()
-    }
+    return {name: quantity.on(joint, tip_unit) for name, quantity in QUANTITIES.items()}
 
 
 def units_of_joints(name: str, plant: Plant) -> dict[str, str]:
     """Return the unit of a quantity for each joint of a plant, by the joint's name."""
     unit = QUANTITIES[name].unit
     joints = zip(plant.joint_names, plant.joint_kinds)
-    return {joint: joint_unit(unit, kind) for joint, kind in joints}
+    return {joint: unit.of(kind, plant.tip_unit) for joint, kind in joints}
 
 
 RESIDUAL = "residual"
 TORQUE_SPEED = "torque_speed"
+_RESERVED = (RESIDUAL, TORQUE_SPEED, "energy")
+"""Names of what is limited, or shown, in other ways."""
 JERK = 3
 """The derivative of the angle that no plant needs, and that is nowhere where the acceleration
 jumps."""
-_RESIDUAL = Quantity(RESIDUAL, "m", "residual vibration", lambda _: [], in_scenarios=True)
+_RESIDUAL = Quantity(RESIDUAL, TIP, Words("residual vibration"), lambda _: [], in_scenarios=True)
 """It has no values on the way, and follows from the state on arrival."""
+_OF_LINE = Words("share of the drive's torque", "share of the drive's force")
+_LINE = Words("torque-speed", "force-speed")
 Sides = float | tuple[float, float]
 """The largest absolute value, or the least and the largest one."""
 Bounds = Sides | Mapping[str, Sides]
@@ -266,7 +371,7 @@ class TorqueSpeedLine:
     joint: str = ROTARY
 
     def __post_init__(self) -> None:
-        words = joint_label("torque", self.joint)
+        words = TORQUE.of(self.joint)
         try:
             pairs = [(torque, speed) for torque, speed in self.points]
         except (TypeError, ValueError):
@@ -279,7 +384,7 @@ class TorqueSpeedLine:
             raise ValueError(
                 f"torque-speed line has {len(pairs)} points; give at most {most_points}"
             )
-        unit, unit_of_speed = (joint_unit(unit, self.joint) for unit in ("N m", "rad/s"))
+        unit, unit_of_speed = (unit.of(self.joint) for unit in (EFFORT, SPEED))
         points = tuple(
             (not_negative(f"{words} of the line", torque, unit),
              not_negative("speed of the line", speed, unit_of_speed))
@@ -320,7 +425,7 @@ class TorqueSpeedLine:
         ]
 
     def __str__(self) -> str:
-        unit = "" if self.joint == MIXED else joint_unit("N m", self.joint).replace(" ", "")
+        unit = "" if self.joint == MIXED else EFFORT.on(self.joint).typed
         return ",".join(f"{torque:g}{unit}@{speed:g}" for torque, speed in self.points)
 
 
@@ -367,18 +472,24 @@ class Limit:
             for name, sides in bounds.items()
         )
         shares = Shares(quantity.values, by_joint)
-        return cls(replace(quantity, unit="", values=shares), -1.0, 1.0)
+        return cls(replace(quantity, unit=NONE.on(plant.joint), values=shares), -1.0, 1.0)
 
     @classmethod
     def of_residual(cls, largest: float, tip_unit: str = "m") -> Limit:
         """Of the residual, in the tip's unit: 0 asks for rest on arrival."""
-        return cls(replace(_RESIDUAL, unit=tip_unit), -largest, largest)
+        return cls(_RESIDUAL.on(ROTARY, tip_unit), -largest, largest)
 
     @classmethod
     def of_line(cls, line: TorqueSpeedLine) -> Limit:
         """Of the torque by a torque-speed line."""
         return cls(
-            Quantity(TORQUE_SPEED, "", "share of the drive's torque", line, joint=line.joint),
+            Quantity(
+                TORQUE_SPEED,
+                NONE.on(line.joint),
+                _OF_LINE,
+                line,
+                words=_LINE.on(line.joint),
+            ),
             -1.0,
             1.0,
         )
@@ -391,7 +502,7 @@ class Limit:
     @property
     def label(self) -> str:
         """What messages call it: torque-speed, or the quantity; of a linear joint a force."""
-        return joint_label(self.name.replace("_", "-"), self.quantity.joint)
+        return str(self.quantity.words)
 
     @property
     def both_ways(self) -> bool:

@@ -4,72 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.checks import IF_STATED
-from quietarm.ocp.record import Verification
-from quietarm.ocp.robustness import Worst
-from quietarm.ocp.saved import Answer, plain, read_content, refusals, typed
-from quietarm.ocp.simulation.objective import Motion
+from quietarm.ocp.checks import clipped, quoted
+from quietarm.ocp.figures import ENERGY, Figures, figures_in
+from quietarm.ocp.limits import FILE, RESIDUAL
+from quietarm.ocp.record import Record
+from quietarm.ocp.saved import Answer, read_content, refusals
 
-
-@dataclass(frozen=True)
-class MainFigures:
-    """F1 [m] and F2 [J]."""
-
-    residual: float
-    energy: float
-
-
-@dataclass(frozen=True)
-class Stated:
-    """What a file says of its motion: for whoever reads the file, and for a check.
-
-    A loaded answer does not take them: its figures are computed from its motion.
-
-    Attributes
-    ----------
-    stated : MainFigures
-        A file without them is refused.
-    """
-
-    worst: ClassVar[Worst | None] = None
-
-    stated: MainFigures
-
-    @property
-    def figures(self) -> dict[str, float]:
-        """The figures by name."""
-        return dataclasses.asdict(self.stated)
-
-
-@dataclass(frozen=True)
-class StatedBefore:
-    """The same of files of before, which held every figure as an entry of its own."""
-
-    motion: Motion
-    verification: Verification
-    worst: Worst | None = field(default=None, metadata=IF_STATED)
-
-    @property
-    def figures(self) -> dict[str, float]:
-        """The figures of the motion by name."""
-        return figures_of(self.motion)
-
-
-def figures_of(motion: Motion) -> dict[str, float]:
-    """Every figure of a motion by its name; of a peak that it does not have there is none."""
-    entries = dataclasses.asdict(motion)
-    ranges = entries.pop("ranges")
-    figures = {name: value for name, value in entries.items() if value is not None}
-    for name, (least, largest) in ranges.items():
-        figures[f"least_{name}"] = least
-        figures[f"largest_{name}"] = largest
-    return figures
+STATED = "stated"
+"""Entry of a file: figures of its motion, for whoever reads it, and for a check."""
 
 
 class MotionAnswer(Answer):
@@ -79,8 +26,7 @@ class MotionAnswer(Answer):
     entries alone (`with_entries`).
     """
 
-    earlier: ClassVar[tuple[int, ...]]
-    """Versions of its file that held every figure, and are read as well."""
+    record: Record
 
     @cached_property
     def candidate(self) -> Candidate:
@@ -88,9 +34,14 @@ class MotionAnswer(Answer):
         raise NotImplementedError
 
     @property
-    def motion(self) -> Motion:
-        """Residual, energy, peaks and other diagnostics, by the independent integrator."""
-        return self.candidate.motion
+    def figures(self) -> Figures:
+        """All figures of the motion by name, by the independent integrator."""
+        return self.candidate.figures
+
+    @property
+    def motion(self) -> Figures:
+        """The same, by the name that they had in 2.0."""
+        return self.candidate.figures
 
     @property
     def energy(self) -> float:
@@ -122,37 +73,35 @@ class MotionAnswer(Answer):
         return self.with_entries(record=dataclasses.replace(self.record, **changes))
 
     def _content(self) -> dict[str, Any]:
-        figures = MainFigures(residual=self.residual, energy=self.energy)
-        return {**super()._content(), "stated": plain(figures)}
+        names = [figure.name for figure in figures_in(FILE)]
+        stated = {name: self.figures[name] for name in names if name in self.figures}
+        return {**super()._content(), STATED: stated}
 
     @classmethod
-    def _entries_of(cls, content: Mapping[str, Any], version: int) -> dict[str, Any]:
-        stated = cls._stated_in(content, version)
-        groups = {group.name for group in dataclasses.fields(stated)}
-        entries = {name: entry for name, entry in content.items() if name not in groups}
-        if isinstance(stated, StatedBefore):
-            entries |= cls._decided_before(stated.verification)
-        return entries
+    def _entries_of(cls, content: Mapping[str, Any]) -> dict[str, Any]:
+        _stated_in(content)  # a file without them is refused
+        return {name: entry for name, entry in content.items() if name != STATED}
 
     @classmethod
-    def _stated_in(cls, content: Mapping[str, Any], version: int) -> Stated | StatedBefore:
-        """The figures among the content of a file; ValueError where one is not of its kind."""
-        kind = StatedBefore if version in cls.earlier else Stated
-        names = {group.name for group in dataclasses.fields(kind)}
-        groups = {name: entry for name, entry in content.items() if name in names}
-        return typed(groups, kind)
-
-    @classmethod
-    def _decided_before(cls, verification: Verification) -> dict[str, Any]:
-        """What was decided, and a file of before has in its verification alone."""
-        raise NotImplementedError
-
-    @classmethod
-    def stated_by(cls, path: str | Path) -> Stated | StatedBefore:
+    def stated_by(cls, path: str | Path) -> dict[str, float]:
         """What a file states of the figures of its motion, to be held against computed ones.
 
         FileFormatError where it is no such file.
         """
-        content, version = read_content(path, cls.kind, cls.version, cls.earlier)
+        content = read_content(path, cls)
         with refusals(path, cls.kind):
-            return cls._stated_in(content, version)
+            return _stated_in(content)
+
+
+def _stated_in(content: Mapping[str, Any]) -> dict[str, float]:
+    """The figures among the content of a file; ValueError where F1 or F2 is not among them."""
+    stated = content.get(STATED, {})
+    if not isinstance(stated, dict):
+        raise ValueError(f"its {STATED} is {quoted(stated)}; give figures by name")
+    for name, figure in stated.items():
+        if isinstance(figure, bool) or not isinstance(figure, int | float):
+            raise ValueError(f"its {STATED}.{clipped(name)} is {quoted(figure)}; give a number")
+    missing = [name for name in (RESIDUAL, ENERGY) if name not in stated]
+    if missing:
+        raise ValueError(f"it does not state its {' and its '.join(missing)}")
+    return stated

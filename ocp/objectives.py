@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 from quietarm.models import Plant
 from quietarm.ocp.checks import several, unknown
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Quantity, quantities_of
+from quietarm.ocp.figures import ENERGY, FIGURES, Figure
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.task import PointToPoint
 
-ENERGY = "energy"
 RESIDUAL_AND_ENERGY = (RESIDUAL, ENERGY)
 """The objectives of every front; those of the paper."""
 
@@ -36,24 +36,24 @@ class Objective(NamedTuple):
     quantity: str = ""
 
 
-OBJECTIVES: Mapping[str, Quantity | None] = {
-    RESIDUAL: None,
-    ENERGY: None,
-    **{quantity.peak: quantity for quantity in QUANTITIES.values()},
-}
-"""Every objective by its name, in the order in which fronts have them; of a peak its quantity."""
+def known_objectives() -> dict[str, Figure]:
+    """Every objective by its name, in the order in which fronts have them: figures of steps."""
+    figures = FIGURES.items()
+    return {
+        name: figure for name, figure in figures if name in RESIDUAL_AND_ENERGY or figure.quantity
+    }
 
 
 def checked_objectives(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of objectives in the order of `OBJECTIVES`.
+    """Names of objectives in the order of `known_objectives`.
 
     A name may be spelt with hyphens, as on the command line. ValueError where one is not known,
     stands twice, or residual or energy is not among them.
     """
     spelt = [_spelt(name) for name in several("objectives", names, "names, as ['residual', ...]")]
     for name in spelt:
-        if name not in OBJECTIVES:
-            offered = [known.replace("_", "-") for known in OBJECTIVES]
+        if name not in known_objectives():
+            offered = [known.replace("_", "-") for known in known_objectives()]
             raise ValueError(unknown("objective", name.replace("_", "-"), offered))
         if spelt.count(name) > 1:
             raise ValueError(f"the objective {name.replace('_', '-')} is given twice; give it once")
@@ -64,7 +64,7 @@ def checked_objectives(names: Sequence[str]) -> tuple[str, ...]:
                 f"objectives are {words}, without the {name}; give residual, energy and those "
                 "beside them"
             )
-    return tuple(name for name in OBJECTIVES if name in spelt)
+    return tuple(name for name in known_objectives() if name in spelt)
 
 
 def refuse_more_objectives(name: str, objectives: Sequence[str]) -> None:
@@ -92,28 +92,22 @@ def _spelt(name: Any) -> str:
 
 def peak_quantities(objectives: Sequence[str]) -> tuple[str, ...]:
     """The quantities whose peaks are objectives, in their order."""
-    quantities = (OBJECTIVES[name] for name in objectives)
-    return tuple(quantity.name for quantity in quantities if quantity is not None)
+    quantities = (FIGURES[name].quantity for name in objectives)
+    return tuple(quantity for quantity in quantities if quantity)
 
 
 def objectives_on(plant: Plant, names: Sequence[str]) -> tuple[Objective, ...]:
     """Objectives in a plant's units."""
-    tip_unit = plant.tip_unit
-    known = {
-        RESIDUAL: Objective(RESIDUAL, tip_unit, "residual F1", f"residual_{tip_unit}"),
-        ENERGY: Objective(ENERGY, "J", "energy F2", "energy_J"),
-    }
-    for name, quantity in quantities_of(plant.joint, tip_unit).items():
-        letters = quantity.unit.replace(" or ", "_or_").replace(" ", "")
-        letters = letters.replace("/", "_per_").replace("^", "")
-        known[quantity.peak] = Objective(
-            quantity.peak,
-            quantity.unit,
-            f"peak {quantity.label}",
-            f"{quantity.peak}_{letters}",
-            name,
-        )
-    return tuple(known[name] for name in names)
+    return tuple(_on(plant, FIGURES[name]) for name in names)
+
+
+def _on(plant: Plant, figure: Figure) -> Objective:
+    unit = figure.unit.on(plant.joint, plant.tip_unit)
+    label = f"{figure.label} {figure.symbol}"
+    if figure.quantity:
+        label = f"peak {QUANTITIES[figure.quantity].label.of(plant.joint)}"
+    column = f"{figure.name}_{unit.spelt('', '_per_', str, '_or_')}"
+    return Objective(figure.name, str(unit), label, column, figure.quantity)
 
 
 def with_peaks_measured(task: PointToPoint, quantities: Sequence[str]) -> PointToPoint:
@@ -129,5 +123,5 @@ def with_peaks_measured(task: PointToPoint, quantities: Sequence[str]) -> PointT
                 f"{limited[name]} differs by direction, so that its peak is no objective; give "
                 "one number"
             )
-    limits: Any = {QUANTITIES[name].limit: 1.0 for name in quantities if name not in limited}
-    return replace(task, **limits) if limits else task
+    more = {name: 1.0 for name in quantities if name not in limited}
+    return replace(task, bounds={**task.bounds, **more}) if more else task

@@ -6,6 +6,7 @@ import platform
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -21,7 +22,9 @@ from quietarm.ocp.checks import (
     quoted,
     whole,
 )
-from quietarm.ocp.simulation.objective import Motion
+
+if TYPE_CHECKING:
+    from quietarm.ocp.figures import Figures
 
 Setting = str | bool | int | float | None
 
@@ -150,6 +153,6 @@ class Verification:
         return self.energy_share <= AGREEMENT and close
 
     @classmethod
-    def between(cls, steps: int, energy: float, residual: float, motion: Motion) -> Verification:
+    def between(cls, steps: int, energy: float, residual: float, motion: Figures) -> Verification:
         """Compare values by fixed steps [J, m] with those of CVODES."""
         return cls(steps, energy, residual, energy - motion.energy, residual - motion.residual)

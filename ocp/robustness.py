@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import NotNegative, takes, whole
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.figures import ENERGY, Figures
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
@@ -41,30 +42,18 @@ Progress = Callable[[int, int], object]
 """Told how many evaluations are done, and how many there are."""
 
 
-@dataclass(frozen=True, eq=False)
-class Figures:
-    """F1 [m], F2 [J] and peak torque [N m] at the nodes of the steps: an entry for each plant."""
-
-    residual: Array
-    energy: Array
-    peak_torque: Array
-
-    def take(self, rows: slice) -> Figures:
-        """Those of some plants."""
-        return Figures(self.residual[rows], self.energy[rows], self.peak_torque[rows])
-
-
 def _along_errors(
     candidate: Candidate,
     ranges: Mapping[str, float],
     errors: Array,
     report: Progress | None = None,
 ) -> Figures:
-    """Figures on plants with errors of shape (plants, ranges), within the ranges."""
+    """Figures at the nodes of the steps, an entry for each plant, of errors (plants, ranges)."""
     faster = 1 + max(ranges.values())  # any of them may be a frequency
     nominal_steps = default_steps(candidate.task.certain, least=1)
     steps = max(ROLLOUT_STEPS, int(np.ceil(faster * nominal_steps)))
-    evaluator = candidate.by_steps(steps, quantities=[QUANTITIES["torque"]], error_names=ranges)
+    torque = QUANTITIES["torque"]
+    evaluator = candidate.by_steps(steps, quantities=[torque], error_names=ranges)
     plants_a_call = 1000
     residuals = list[Array]()
     energies = list[Array]()
@@ -78,9 +67,11 @@ def _along_errors(
         if report is not None:
             report(first + len(block), len(errors))
     return Figures(
-        residual=np.concatenate(residuals),
-        energy=np.concatenate(energies),
-        peak_torque=np.concatenate(peak_torques),
+        {
+            RESIDUAL: np.concatenate(residuals),
+            ENERGY: np.concatenate(energies),
+            torque.peak: np.concatenate(peak_torques),
+        }
     )
 
 
@@ -282,7 +273,7 @@ class Robustness:
 
     def percentile(self, figure: str, share: float) -> float:
         """A percentile of the samples, of a quantity by its name."""
-        return float(np.percentile(getattr(self.samples, figure), share))
+        return float(np.percentile(self.samples[figure], share))
 
 
 def tolerated_residual(task: PointToPoint) -> float:

@@ -24,10 +24,12 @@ class Sample(NamedTuple):
         The motion of every joint [rad, rad/s, rad/s^2, rad/s^3].
     W, dW, ddW : sequence
         Modal amplitudes [m], their rates [m/s] and accelerations [m/s^2].
-    tips, tip_speeds : sequence
-        Displacements of the tips [m], and their rates [m/s].
+    tips : sequence
+        Displacements of the tips [m].
     torques : sequence
         Torque of every joint [N m].
+    plant : Plant or None
+        Of which it is: what only some ask for follows from it.
     """
 
     path: JointMotion
@@ -36,8 +38,20 @@ class Sample(NamedTuple):
     dW: Modes
     ddW: Modes
     tips: Sequence[Expression]
-    tip_speeds: Sequence[Expression]
     torques: Sequence[Expression]
+    plant: Plant | None = None
+
+    @property
+    def tip_speeds(self) -> Sequence[Expression]:
+        """Time derivatives of the tips' displacements [m/s]."""
+        assert self.plant is not None
+        return self.plant.tip_speeds(self.path, self.W, self.dW)
+
+    @property
+    def tip_accelerations(self) -> Sequence[Expression]:
+        """Their second time derivatives [m/s^2]."""
+        assert self.plant is not None
+        return self.plant.tip_accelerations(self.path, self.W, self.dW, self.ddW)
 
     @property
     def powers(self) -> list[Expression]:
@@ -53,7 +67,7 @@ class Sample(NamedTuple):
     def values(self) -> list[Expression]:
         """Every value, in the order of the attributes; a jerk that is None is left out."""
         motions = [value for joint in (self.path, *self.joints) for value in joint]
-        columns = [*self.W, *self.dW, *self.ddW, *self.tips, *self.tip_speeds, *self.torques]
+        columns = [*self.W, *self.dW, *self.ddW, *self.tips, *self.torques]
         return [value for value in motions if value is not None] + columns
 
     def with_values(self, values: Iterable[Expression]) -> Sample:
@@ -73,8 +87,8 @@ class Sample(NamedTuple):
             dW=entries(self.dW),
             ddW=entries(self.ddW),
             tips=entries(self.tips),
-            tip_speeds=entries(self.tip_speeds),
             torques=entries(self.torques),
+            plant=self.plant,
         )
 
 
@@ -87,8 +101,8 @@ def sample_plant(plant: Plant, path: JointMotion, W: Modes, dW: Modes, ddW: Mode
         dW=dW,
         ddW=ddW,
         tips=plant.tips_at(path, W),
-        tip_speeds=plant.tip_speeds(path, W, dW),
         torques=plant.torques(path, W, dW, ddW),
+        plant=plant,
     )
 
 

@@ -7,9 +7,10 @@ import hashlib
 import json
 import re
 from codecs import BOM_UTF8
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from enum import Enum
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar, Self, TypeVar, get_type_hints
 
@@ -26,7 +27,6 @@ from quietarm.ocp.files import read_bytes, write_whole
 from quietarm.ocp.json_text import LEAVES, refuse_repeated, texts_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.term_profile import import_profiles
-from quietarm.ocp.record import Record
 
 
 def to_html(rows: Iterable[Iterable[str]], head: Iterable[str] = ()) -> str:
@@ -79,15 +79,19 @@ def plain(value: Any, whole: bool = False) -> Any:
 
 
 def _entries(value: Any, whole: bool) -> dict[str, Any]:
-    return {
+    entries = {
         entry.name: plain(getattr(value, entry.name), whole)
         for entry in dataclasses.fields(value)
         if entry.init and (whole or _has_something(value, entry))
     }
+    as_saved = getattr(value, "as_saved", None)
+    return entries if as_saved is None else as_saved(entries)
 
 
 def _may_be_missing(value: Any) -> set[str]:
     """The entries that a file has only where they say something."""
+    if not dataclasses.is_dataclass(value):
+        return set()
     return {entry.name for entry in dataclasses.fields(value) if "if_stated" in entry.metadata}
 
 
@@ -125,8 +129,9 @@ def _named(value: Any) -> dict[str, Any]:
 
 def typed(document: Any, kind: type[T]) -> T:
     """The value of a document; ValueError where an entry is missing, unknown or not of its kind."""
+    document = _as_meant(document, kind)
     try:
-        value = msgspec.convert(document, kind, dec_hook=_known_here)
+        value = msgspec.convert(_meant(document, kind), kind, dec_hook=_known_here)
     except msgspec.ValidationError as error:
         ours = error.__cause__ is not None  # words of a constructor, which quote little
         words = str(error) if ours else clipped(str(error), _MOST_OF_PARSER)
@@ -143,7 +148,29 @@ def typed(document: Any, kind: type[T]) -> T:
 
 def as_loaded(value: T) -> T:
     """A value as its file would load: a window of 1 is one of 1.0 s."""
-    return msgspec.convert(plain(value), type(value), dec_hook=_known_here)
+    kind = type(value)
+    return msgspec.convert(_meant(plain(value), kind), kind, dec_hook=_known_here)
+
+
+def _meant(document: Any, kind: Any) -> Any:
+    """A document as the class and its entries' classes take it, by their `of_saved`."""
+    if not isinstance(document, dict) or not isinstance(kind, type):
+        return document
+    parts = _parts_of(kind)
+    inner = {
+        name: _meant(entry, parts[name]) if name in parts else entry
+        for name, entry in document.items()
+    }
+    return _as_meant(inner, kind)
+
+
+@lru_cache(maxsize=64)
+def _parts_of(kind: type[Any]) -> Mapping[str, type[Any]]:
+    """The entries of a dataclass that are dataclasses themselves."""
+    if not dataclasses.is_dataclass(kind):
+        return {}
+    hints = get_type_hints(kind).items()
+    return {name: hint for name, hint in hints if dataclasses.is_dataclass(hint)}  # pyright: ignore[reportReturnType]
 
 
 def _unknown(document: Any, known: Any) -> set[str]:
@@ -189,7 +216,7 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
     entries = [entry for entry in dataclasses.fields(kind) if "content" in entry.metadata]
     classes = get_type_hints(kind) if entries else {}
     content = {
-        entry.name: typed(_as_meant(table[entry.name], classes[entry.name]), classes[entry.name])
+        entry.name: typed(table[entry.name], classes[entry.name])
         for entry in entries
         if entry.name in table
     }
@@ -197,7 +224,7 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _as_meant(document: Any, kind: type[Any]) -> Any:
-    """What a file has of a part of a plant, by the part's `of_saved` where it has changed since."""
+    """What a file has of a value, by the `of_saved` of its class where that has changed since."""
     of_saved = getattr(kind, "of_saved", None)
     return document if of_saved is None else of_saved(document)
 
@@ -244,48 +271,33 @@ def read_document(path: str | Path, kind: str) -> Any:
     return document
 
 
-def stated_part(value: Any, document: Any) -> Any:
-    """The entries of a value in JSON's types that a document has, at any depth.
-
-    A file has none of what is newer than itself.
-    """
-    match value, document:
-        case dict(), dict():
-            return {
-                name: stated_part(entry, document[name])
-                for name, entry in value.items()
-                if name in document
-            }
-        case list(), list() if value and type(value[0]) not in LEAVES:
-            return [stated_part(*pair) for pair in zip(value, document)]
-    return value
+def read_content(path: str | Path, kind: type[Answer]) -> dict[str, Any]:
+    """What the file of an answer holds beside format, version and checksum; both are checked."""
+    return _content_of(read_document(path, kind.kind), path, kind)
 
 
-def read_content(
-    path: str | Path, kind: str, version: int, earlier: Collection[int] = ()
-) -> tuple[dict[str, Any], int]:
-    """What a file holds beside format and checksum, and its version; both are checked."""
-    return _content_of(read_document(path, kind), path, kind, version, earlier)
-
-
-def _content_of(
-    document: Any, path: str | Path, kind: str, version: int, earlier: Collection[int]
-) -> tuple[dict[str, Any], int]:
-    """What a document holds beside format and checksum, and its version; both are checked."""
+def _content_of(document: Any, path: str | Path, kind: type[Answer]) -> dict[str, Any]:
+    """What a document holds beside format, version and checksum; both are checked."""
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
     stated_format = content.pop("format", None)
     stated_version = content.pop("version", None)
-    if stated_format != f"quietarm-{kind}":
+    name = kind.kind
+    if stated_format != f"quietarm-{name}":
         raise FileFormatError(
-            f"{path} is not a {kind}: its format is {quoted(stated_format)}; give a {kind} file"
+            f"{path} is not a {name}: its format is {quoted(stated_format)}; give a {name} file"
         )
-    if stated_version not in (version, *earlier):
+    if stated_version in kind.read_by_2_0:
         raise FileFormatError(
-            f"{path} has version {quoted(stated_version)} of the {kind} format and this quietarm "
-            f"reads {version}; find the {kind} again, or install the quietarm that wrote it"
+            f"{path} has version {stated_version} of the {name} format, of before 2.0.0, and this "
+            f"quietarm reads {kind.version}; load it with quietarm 2.0 and save it again"
         )
-    return content, stated_version
+    if stated_version != kind.version:
+        raise FileFormatError(
+            f"{path} has version {quoted(stated_version)} of the {name} format and this quietarm "
+            f"reads {kind.version}; find the {name} again, or install the quietarm that wrote it"
+        )
+    return content
 
 
 def _no_json_number(path: str | Path) -> str:
@@ -300,21 +312,6 @@ def _no_json_number(path: str | Path) -> str:
         text = read_bytes(path).removeprefix(BOM_UTF8).decode()
         json.loads(text, parse_constant=str, object_pairs_hook=take)
     return odd[0] if odd else ""
-
-
-def keeps_checksum(path: str | Path, name: str) -> bool | None:
-    """Whether a file says what `save` wrote, by its checksum; None where it has none.
-
-    It tells changes of what no evaluation tells: candidates, iterations, time, method. Whoever
-    computes the checksum again can write what they like.
-    """
-    return _is_unchanged(read_document(path, name))
-
-
-def _is_unchanged(document: Mapping[str, Any]) -> bool | None:
-    """Whether a document has the checksum of its entries; None where it has none."""
-    stated = document.get(CHECKSUM)
-    return None if stated is None else stated == _checksum_of(document)
 
 
 def _checksum_of(document: Mapping[str, Any]) -> str:
@@ -340,15 +337,22 @@ def refusals(path: str | Path, kind: str) -> Iterator[None]:
         raise FileFormatError(f"{path} is not a valid {kind}: {error}{remedy}") from None
 
 
-class Saved:
-    """An answer that has a file of its attributes: JSON, versioned, never executed."""
+class Answer:
+    """What was found, with a file of its attributes: JSON, versioned, never executed.
+
+    A subclass is a dataclass. A sealed file has a checksum of all other entries, and is refused
+    without. It tells changes of what no evaluation tells: candidates, iterations, time, method.
+    Whoever computes the checksum again can write what they like.
+    """
 
     kind: ClassVar[str]
     """What it is, in a word; its format is named quietarm-<kind>."""
     version: ClassVar[int]
     """Version of its format, as it is written."""
-    earlier: ClassVar[tuple[int, ...]] = ()
-    """Versions that are read as well; files of any other are refused."""
+    read_by_2_0: ClassVar[tuple[int, ...]] = ()
+    """Versions of before 2.0.0 that 2.0.0 reads, and writes in the present one."""
+    sealed: ClassVar[bool] = True
+    """Whether its file has a checksum, and is refused without."""
 
     @interruptible
     def save(self, path: str | Path) -> None:
@@ -357,7 +361,11 @@ class Saved:
 
     def _text(self) -> str:
         """What its file says."""
-        return texts_of(self._document()).indented
+        texts = texts_of(self._document())
+        if not self.sealed:
+            return texts.indented
+        entries = texts.indented.removesuffix("\n}")
+        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
 
     def _document(self) -> dict[str, Any]:
         return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
@@ -377,48 +385,25 @@ class Saved:
             When the file holds something else, is not whole, or of another version.
         """
         document = read_document(path, cls.kind)
-        content, version = _content_of(document, path, cls.kind, cls.version, cls.earlier)
+        content = _content_of(document, path, cls)
         with refusals(path, cls.kind):
-            answer = typed(cls._entries_of(content, version), cls)
-            cls._check_document(document, version)
+            answer = typed(cls._entries_of(content), cls)
+            cls._check_document(document)
         return answer
 
     @classmethod
-    def _check_document(cls, document: Mapping[str, Any], version: int) -> None:
+    def _check_document(cls, document: Mapping[str, Any]) -> None:
         """Refuse a document that was changed since it was written, where its format tells."""
-
-    @classmethod
-    def _entries_of(cls, content: Mapping[str, Any], version: int) -> Mapping[str, Any]:
-        """The entries of an answer among the content of its file, as they are today."""
-        del version
-        return content
-
-
-class Answer(Saved):
-    """What a method found. A subclass is a dataclass with the entry below.
-
-    Its file has a checksum, and is refused without: only versions before had none.
-    """
-
-    record: Record
-
-    @classmethod
-    def _check_document(cls, document: Mapping[str, Any], version: int) -> None:
-        unchanged = _is_unchanged(document)
-        if unchanged or (unchanged is None and version in cls.earlier):
+        stated = document.get(CHECKSUM)
+        if not cls.sealed or stated == _checksum_of(document):
             return
-        why = "it has no checksum" if unchanged is None else "its checksum is of other entries"
+        why = "it has no checksum" if stated is None else "its checksum is of other entries"
         raise ValueError(
             f"it was changed since it was written, as {why}; find the {cls.kind} again, or "
             "evaluate its coefficients by quietarm evaluate"
         )
 
-    def _text(self) -> str:
-        texts = texts_of(self._document())
-        entries = texts.indented.removesuffix("\n}")
-        return f'{entries},\n  "{CHECKSUM}": "{_digest(texts.canonical)}"\n}}'
-
-    def restated(self, **changes: Any) -> Self:
-        """The same answer with other entries of its record."""
-        answer: Any = self
-        return dataclasses.replace(answer, record=dataclasses.replace(self.record, **changes))
+    @classmethod
+    def _entries_of(cls, content: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The entries of an answer among the content of its file."""
+        return content

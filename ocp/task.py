@@ -5,18 +5,29 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from math import isclose
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Plant, known_plants
-from quietarm.models.joint_motion import LINEAR, joint_unit
+from quietarm.models.dimensions import NONE, SECOND, WAY, Unit
+from quietarm.models.joint_motion import LINEAR
 from quietarm.models.validation import check_along, check_contract
-from quietarm.ocp.checks import finite, has_no, instance, numbers, positive, quoted, several, takes
+from quietarm.ocp.checks import (
+    finite,
+    has_no,
+    instance,
+    numbers,
+    positive,
+    quoted,
+    several,
+    takes,
+    unknown,
+)
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy, check_energy
 from quietarm.ocp.limits import (
     QUANTITIES,
@@ -26,7 +37,6 @@ from quietarm.ocp.limits import (
     Quantity,
     Sides,
     TorqueSpeedLine,
-    quantities_of,
     units_of_joints,
 )
 from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
@@ -68,21 +78,28 @@ class ModalState:
             )
 
 
-OF_MOVES = {"start": "rad", "target": "rad", "duration": "s"}
+OF_MOVES: Mapping[str, Unit] = {"start": WAY, "target": WAY, "duration": SECOND}
 """What a move has, by name, with its unit."""
-_UNITS = (
-    OF_MOVES
-    | {"residual window": "s"}
-    | {f"{quantity.name} limit": quantity.unit for quantity in QUANTITIES.values()}
-)
 LEAST_DURATION = 1e-6
 LEAST_MOVE = 1e-9
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
 _SMALL_MOVE = 1e-3
 """A shorter move [rad or m] has absolute tolerances that are smaller in proportion."""
+_LIMIT = "_limit"
+"""How the keyword of a quantity's limit ends."""
 
 
-@dataclass(frozen=True)
+class _NotGiven:
+    """The default of a limit: `replace` keeps what the task has, where None takes it away."""
+
+    def __repr__(self) -> str:
+        return "None"
+
+
+_NOT_GIVEN: Any = _NotGiven()
+
+
+@dataclass(frozen=True, init=False)
 class PointToPoint:
     """A point-to-point move of a plant's joint.
 
@@ -98,6 +115,8 @@ class PointToPoint:
         [m] and rate of change of the joint's acceleration [rad/s^3] on the way; or of each the
         least value and the largest one, as (-30, 40). Those of joints may be by name, each as
         above: ``{"joint_1": 16.0, "joint_2": (-30, 40)}``; joints without a name have no limit.
+    **limits : optional
+        The same of every other quantity of `QUANTITIES`, as ``tip_acceleration_limit=3.0``.
     torque_speed : sequence of (float, float), optional
         Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]; of a linear
         joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
@@ -113,6 +132,9 @@ class PointToPoint:
         What counts as F2; the paper's absolute power by default.
     uncertainty : Uncertainty, optional
         Ranges of the plant's parameter errors; none by default.
+    bounds : mapping of str to bounds, optional
+        The limits by the names of their quantities, ``{"torque": 0.2}``; `replace` with an empty
+        one takes all away. A keyword of a limit counts for more.
 
     Raises
     ------
@@ -133,17 +155,115 @@ class PointToPoint:
     target: float
     duration: float
     start: float = 0.0
-    torque_limit: Bounds | None = None
-    speed_limit: Bounds | None = None
-    acceleration_limit: Bounds | None = None
-    deflection_limit: Bounds | None = None
+    bounds: Mapping[str, Bounds] = field(default_factory=dict)
     residual_window: float = DefaultWindow(EQ_11)
-    jerk_limit: Bounds | None = None
     initial: ModalState | None = None
     final: ModalState | None = None
     energy: Energy = ABSOLUTE_POWER
     uncertainty: Uncertainty | None = None
     torque_speed: tuple[tuple[float, float], ...] | None = None
+
+    @classmethod
+    def of(cls, plant: Plant, target: float, duration: float, **others: Any) -> PointToPoint:
+        """The move of a plant within limits of its own, `Plant.limits`; with other keywords.
+
+        A limit that is given is in the place of the plant's own of that quantity, and None is none.
+
+        Raises
+        ------
+        ValueError
+            As of the class, and when the plant has a limit of something else.
+        """
+        instance("plant", plant, Plant)
+        own = dict[str, Any]()
+        for name, bounds in plant.limits.items():
+            if name not in QUANTITIES:
+                raise ValueError(has_no(plant.name, "limit of", name, QUANTITIES))
+            if bounds:
+                own[QUANTITIES[name].limit] = bounds
+        return cls(plant, target, duration, **{**own, **others})
+
+    def __init__(
+        self,
+        plant: Plant,
+        target: float,
+        duration: float,
+        start: float = 0.0,
+        torque_limit: Bounds | None = _NOT_GIVEN,
+        speed_limit: Bounds | None = _NOT_GIVEN,
+        acceleration_limit: Bounds | None = _NOT_GIVEN,
+        deflection_limit: Bounds | None = _NOT_GIVEN,
+        residual_window: float | None = DefaultWindow(EQ_11),
+        jerk_limit: Bounds | None = _NOT_GIVEN,
+        initial: ModalState | None = None,
+        final: ModalState | None = None,
+        energy: Energy = ABSOLUTE_POWER,
+        uncertainty: Uncertainty | None = None,
+        torque_speed: Sequence[tuple[float, float]] | None = None,
+        *,
+        bounds: Mapping[str, Bounds] | None = None,
+        **limits: Bounds | None,
+    ) -> None:
+        given = {
+            "torque_limit": torque_limit,
+            "speed_limit": speed_limit,
+            "acceleration_limit": acceleration_limit,
+            "deflection_limit": deflection_limit,
+            "jerk_limit": jerk_limit,
+            **limits,
+        }
+        entries = {
+            "plant": plant,
+            "target": target,
+            "duration": duration,
+            "start": start,
+            "bounds": _merged(bounds, given),
+            "residual_window": residual_window,
+            "initial": initial,
+            "final": final,
+            "energy": energy,
+            "uncertainty": uncertainty,
+            "torque_speed": torque_speed,
+        }
+        for name, value in entries.items():
+            object.__setattr__(self, name, value)
+        self.__post_init__()
+
+    if TYPE_CHECKING:  # names that editors know; at run time there is one for every quantity
+
+        @property
+        def torque_limit(self) -> Bounds | None:
+            """Bounds of the joint's torque; None where it has none."""
+            ...
+
+        @property
+        def speed_limit(self) -> Bounds | None:
+            """Bounds of the joint's speed; None where it has none."""
+            ...
+
+        @property
+        def acceleration_limit(self) -> Bounds | None:
+            """Bounds of the joint's acceleration; None where it has none."""
+            ...
+
+        @property
+        def deflection_limit(self) -> Bounds | None:
+            """Bounds of the tip's displacement; None where it has none."""
+            ...
+
+        @property
+        def jerk_limit(self) -> Bounds | None:
+            """Bounds of the joint's jerk; None where it has none."""
+            ...
+
+    else:
+
+        def __getattr__(self, name: str) -> Bounds | None:
+            """Return the bounds of a quantity by its limit's keyword; None where it has none."""
+            quantity = name.removesuffix(_LIMIT)
+            if quantity == name or quantity not in QUANTITIES or "bounds" not in vars(self):
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            return self.bounds.get(quantity)
 
     def __post_init__(self) -> None:
         if not isinstance(self.plant, Plant):
@@ -158,7 +278,7 @@ class PointToPoint:
         if self.uncertainty is not None:
             check_ranges(self.plant, self.ranges)
         follows = _is_default(self.residual_window)
-        unit = joint_unit("rad", self.plant.joint)
+        unit = WAY.of(self.plant.joint)
         # Beyond this [rad, m, s] no joint moves, and double precision does not follow.
         most = 1e6
         for name in ("start", "target"):
@@ -188,10 +308,14 @@ class PointToPoint:
 
     def _check_limits(self) -> None:
         """Read the limits; ValueError where one is out of range."""
-        for quantity in quantities_of(self.plant.joint, self.plant.tip_unit).values():
-            if getattr(self, quantity.limit) is not None:
-                bounds = _check_bounds(quantity, getattr(self, quantity.limit), self.plant)
-                object.__setattr__(self, quantity.limit, bounds)
+        for name in self.bounds:
+            if name not in QUANTITIES:
+                raise ValueError(unknown("limit", name, QUANTITIES))
+        bounds = {
+            quantity.name: _check_bounds(quantity, self.bounds[quantity.name], self.plant)
+            for quantity in self._limited
+        }
+        object.__setattr__(self, "bounds", ByJoint(bounds))
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             object.__setattr__(self, "torque_speed", line.points)
@@ -316,21 +440,80 @@ class PointToPoint:
     @property
     def limits(self) -> tuple[Limit, ...]:
         """The limits that are set."""
-        quantities = quantities_of(self.plant.joint, self.plant.tip_unit).values()
-        stated = [(quantity, getattr(self, quantity.limit)) for quantity in quantities]
         limits = [
-            Limit.within(quantity, bounds, self.plant)
-            for quantity, bounds in stated
-            if bounds is not None
+            Limit.within(quantity, self.bounds[quantity.name], self.plant)
+            for quantity in self._limited
         ]
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             limits.append(Limit.of_line(line))
         return tuple(limits)
 
+    @property
+    def _limited(self) -> list[Quantity]:
+        """The quantities that have bounds, in the units of the plant."""
+        for name in self.bounds:  # a process of its own may know less
+            if name not in QUANTITIES:
+                raise ValueError(
+                    f"the quantity {quoted(name)} that the task limits is not known here; import "
+                    "the file that defines it first, or name it by --plant-file"
+                )
+        joint, tip_unit = self.plant.joint, self.plant.tip_unit
+        known = (quantity for name, quantity in QUANTITIES.items() if name in self.bounds)
+        return [quantity.on(joint, tip_unit) for quantity in known]
+
+    def as_saved(self, entries: Mapping[str, Any]) -> dict[str, Any]:
+        """Return its entries as files have them: each limit by its keyword."""
+        by_keyword = dict.fromkeys((f"{name}{_LIMIT}" for name in _ALWAYS_SAVED), None)
+        by_keyword |= {f"{name}{_LIMIT}": bounds for name, bounds in entries["bounds"].items()}
+        return {name: entry for name, entry in entries.items() if name != "bounds"} | by_keyword
+
+    @staticmethod
+    def of_saved(document: Any) -> Any:
+        """Return the entries of a file as they are here: limits among the bounds."""
+        if not isinstance(document, dict):
+            return document
+        entries = dict[str, Any]()
+        bounds = dict[str, Any]()
+        for name, entry in document.items():
+            quantity = name.removesuffix(_LIMIT)
+            if quantity == name:
+                entries[name] = entry
+            elif quantity not in QUANTITIES:
+                raise ValueError(
+                    f"its limit {quoted(name)} is not known here; import the file that defines the "
+                    "quantity first, or name it by --plant-file"
+                )
+            elif entry is not None:
+                bounds[quantity] = entry
+        return {**entries, "bounds": bounds}
+
     def limit_of(self, name: str) -> Limit | None:
         """The limit of a quantity by name; None where it has none."""
         return next((limit for limit in self.limits if limit.name == name), None)
+
+
+_ALWAYS_SAVED = ("torque", "speed", "acceleration", "deflection", "jerk")
+"""Quantities whose limits files have where there is none, too: digests of 2.0 are of these."""
+
+
+def _merged(
+    bounds: Mapping[str, Bounds] | None, given: Mapping[str, Bounds | None]
+) -> dict[str, Any]:
+    """Bounds by quantity, and those that are given by the keywords of limits; None takes away."""
+    if bounds is not None and not isinstance(bounds, Mapping):
+        raise TypeError(f"bounds are {quoted(bounds)}; give them by name, as {{'torque': 0.2}}")
+    merged: dict[str, Any] = dict(bounds or {})
+    for keyword, value in given.items():
+        name = keyword.removesuffix(_LIMIT)
+        if name not in QUANTITIES or name == keyword:
+            known = [quantity.limit for quantity in QUANTITIES.values()]
+            raise TypeError(unknown("argument", keyword, known))
+        if value is None:
+            merged.pop(name, None)
+        elif value is not _NOT_GIVEN:
+            merged[name] = value
+    return merged
 
 
 def _is_default(window: object) -> bool:
@@ -342,7 +525,7 @@ def _check_bounds(quantity: Quantity, value: Any, plant: Plant) -> Bounds:
     """A positive number, or a negative and a positive one; or such of joints by name."""
     name = quantity.limit.replace("_", " ")
     if not isinstance(value, Mapping):
-        return _check_sides(name, quantity.unit, value)
+        return _check_sides(name, str(quantity.unit), value)
     if not quantity.of_joints:
         raise ValueError(
             f"{name} is {quoted(value)}; give one for all, as {quantity.label}s have no joint"
@@ -388,10 +571,9 @@ def task_difference(task: PointToPoint, reference: PointToPoint) -> str:
         return f"plant is {task.plant.name}, not {reference.plant.name}"
     entries = dict(_entries(_stated(task)))
     expected = dict(_entries(_stated(reference)))
-    joint = task.plant.joint
     return ", ".join(
-        f"{name} is {_words(name, entries.get(name), joint)}, "
-        f"not {_words(name, expected.get(name), joint)}"
+        f"{name} is {_words(name, entries.get(name), task.plant)}, "
+        f"not {_words(name, expected.get(name), task.plant)}"
         for name in entries | expected
         if not _same(entries.get(name), expected.get(name))
     )
@@ -400,11 +582,12 @@ def task_difference(task: PointToPoint, reference: PointToPoint) -> str:
 def _stated(task: PointToPoint) -> dict[str, object]:
     """All that a task has, by words; states are numbers, given or not."""
     # Fields that are told in another way.
-    apart = "plant", "initial", "final", "energy", "uncertainty"
+    apart = "plant", "initial", "final", "energy", "uncertainty", "bounds"
     plain = (entry.name for entry in fields(task) if entry.name not in apart)
     return {
         "plant parameter": task.plant.parameters,
         **{name.replace("_", " "): getattr(task, name) for name in plain},
+        **{_limit_words(name): bounds for name, bounds in task.bounds.items()},
         "initial state": task.initial_state,
         "final state": task.final_state,
         "energy": task.energy.label,
@@ -435,8 +618,14 @@ def _same(first: object, second: object) -> bool:
     return first == second
 
 
-def _words(name: str, value: object, joint: str) -> str:
+def _limit_words(quantity: str) -> str:
+    return f"{quantity.replace('_', ' ')} limit"
+
+
+def _words(name: str, value: object, plant: Plant) -> str:
     if value is None:
         return "none"
-    unit = joint_unit(_UNITS.get(name, ""), joint)
+    units = {"residual window": SECOND} | dict(OF_MOVES)
+    units |= {_limit_words(quantity.name): quantity.unit for quantity in QUANTITIES.values()}
+    unit = units.get(name, NONE).of(plant.joint, plant.tip_unit)
     return f"{value:.10g} {unit}".strip() if isinstance(value, float) else str(value)

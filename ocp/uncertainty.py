@@ -87,6 +87,12 @@ class ScaledModes(Plant):
         """Those of the plant [m/s]."""
         return self.plant.tip_speeds(path, W, dW)
 
+    def tip_accelerations(
+        self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes
+    ) -> Sequence[Expression]:
+        """Those of the plant [m/s^2]."""
+        return self.plant.tip_accelerations(path, W, dW, ddW)
+
     @property
     def tip_lines(self) -> np.ndarray | None:
         """Those of the plant."""

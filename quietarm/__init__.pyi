@@ -6,6 +6,8 @@ from . import studies as studies
 from . import views as views
 from .machine import Recording as Recording
 from .machine.identify import identify as identify
+from .metaheuristics import Indicator as Indicator
+from .metaheuristics import SearchMethod as SearchMethod
 from .metaheuristics import search as search
 from .models import ArmOnFlexibleLink as ArmOnFlexibleLink
 from .models import Beam as Beam
@@ -48,6 +50,7 @@ from .ocp import weighted_front as weighted_front
 from .studies import bench as bench
 from .studies import compare as compare
 from .studies.sweep import sweep as sweep
+from .views import ExportFormat as ExportFormat
 from .views import pictures as pictures
 from .views.pictures import motion_figure as motion_figure
 

@@ -7,13 +7,39 @@ from types import ModuleType
 
 MOVED = {"figures": "pictures"}
 """Names of `qa`."""
+MOVED_WITHIN = {
+    "models": {"joint_unit": "Unit"},
+    "ocp": {"Motion": "Figures"},
+    "pictures": {"QUANTITIES_DRAWN": "drawn_quantities"},
+}
+"""Names of its packages."""
 
-_ROOMS = {
+ROOMS = {
+    "models.checks": "models.number_checks",
+    "models.robot.beam": "models.robot.elastic.beam",
+    "models.robot.cartesian": "models.robot.path.straight_line",
+    "models.robot.files": "models.robot.text_files",
+    "models.robot.flexibility": "models.robot.elastic.flexibility",
+    "models.robot.full": "models.robot.on_path.full",
+    "models.robot.mechanism": "models.robot.dynamics.mechanism",
+    "models.robot.modes": "models.robot.dynamics.modes",
+    "models.robot.piecewise": "models.robot.path.piecewise",
+    "models.robot.reduction": "models.robot.on_path.reduction",
+    "models.robot.spectra": "models.robot.elastic.spectra",
+    "models.robot.stick_figure": "models.robot.on_path.stick_figure",
+    "models.robot.tables": "models.robot.on_path.path_tables",
+    "metaheuristics.gradient": "metaheuristics.methods.gradient_methods",
+    "metaheuristics.user_method": "metaheuristics.methods.user_method",
+    "metaheuristics.objective": "metaheuristics.evaluation",
+    "metaheuristics.algorithms.presets": "metaheuristics.methods.presets",
+    "metaheuristics.algorithms.settings": "metaheuristics.methods.settings",
+    "metaheuristics.algorithms.building": "metaheuristics.methods.building",
     "studies.identify": "machine.identify",
     "studies.identify.signals": "machine.recordings",
     "studies.figures": "views.pictures",
     "studies.report": "views.report",
     "studies.export": "views",
+    "studies.explore": "views.explore",
     "studies.reading": "studies.answers",
     "studies.tips": "views.tips",
 }
@@ -28,5 +54,5 @@ class MovedRooms:
     ) -> None:
         """Nothing of other modules; ImportError with the room's place now."""
         room = name.removeprefix("quietarm.")
-        if name != room and room in _ROOMS:
-            raise ImportError(f"{name} has moved to quietarm.{_ROOMS[room]}", name=name)
+        if name != room and room in ROOMS:
+            raise ImportError(f"{name} has moved to quietarm.{ROOMS[room]}", name=name)

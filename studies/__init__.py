@@ -1,8 +1,7 @@
 """The command line, and the studies behind it.
 
-Rooms: `cli` has the commands; `bench`, `compare`, `reproduce`, `sweep`, `identify`, `export` and
-`explore` what they do; `figures` draws, `report` writes, and `reading` knows what files and users
-call things. All of them may import the other three packages.
+Rooms: `cli` has the commands; `bench`, `compare`, `reproduce` and `sweep` do what they are named
+after, and `answers` reads files. All of them may import the other packages.
 """
 
 from quietarm.loading import attach

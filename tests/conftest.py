@@ -15,7 +15,12 @@ os.environ.setdefault("NUMBA_OPT", "0")
 
 from pages import blocks
 
-from quietarm.models import DualLinkManipulator, Plant, compiled, known_plants
+from quietarm.metaheuristics import Indicator, SearchMethod
+from quietarm.models import DualLinkManipulator, Plant, compiled, known_plants, plant_file
+from quietarm.ocp import FIGURES, QUANTITIES, Energy, JointProfile, remove_figure, remove_quantity
+from quietarm.ocp.checks import ships
+from quietarm.views import ExportFormat
+from quietarm.views.pictures.panel import Panel
 
 # The tests of a session share the functions that they compile: a tenth of their time.
 compiled.RECENT = 48
@@ -68,6 +73,34 @@ def two_links():
 def _plants_of_this_test_are_forgotten(monkeypatch):
     """Plants that a test defines are known by name during that test only."""
     monkeypatch.setattr(Plant, "_known", known_plants())
+
+
+@pytest.fixture
+def what_is_made_up_is_forgotten(monkeypatch, _plants_of_this_test_are_forgotten):
+    """What a test defines is known by name during that test only."""
+    before = set(classes_with_a_name())
+    quantities, figures = {*QUANTITIES}, {*FIGURES}
+    monkeypatch.setattr(plant_file, "_module_of", dict(plant_file._module_of))
+    yield
+    for kind in classes_with_a_name():
+        if kind not in before and not ships(kind):
+            kind.name = None  # which is no name
+    for name in {*QUANTITIES} - quantities:
+        remove_quantity(name)
+    for name in {*FIGURES} - figures:
+        remove_figure(name)
+
+
+def classes_with_a_name(family=object):
+    """Classes of quietarm's families, shipped or not, that are known by a name."""
+    families = [family]
+    if family is object:
+        families = [Energy, ExportFormat, Indicator, JointProfile, Panel, SearchMethod]
+    for kind in families:
+        if isinstance(vars(kind).get("name"), str):
+            yield kind
+        for below in kind.__subclasses__():
+            yield from classes_with_a_name(below)
 
 
 @pytest.fixture

@@ -62,7 +62,7 @@ TESTS = {
     "ocp/simulation/free_vibration.py": [*QUICK, "ocp/planning/test_shaping.py"],
     "ocp/simulation/rollout.py": [
         *QUICK,
-        "metaheuristics/objective/test_population.py",
+        "metaheuristics/evaluation/test_population.py",
         *SLOW,
         "ocp/solvers/test_both_solvers.py",
     ],

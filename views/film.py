@@ -20,7 +20,7 @@ from PIL import Image
 from quietarm.interrupts import interruptible
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import unwritable, write_whole
-from quietarm.views.formats.formats import FORMATS, FRAMES, WIDTHS, format_of
+from quietarm.views.film_settings import FRAMES, WIDTHS
 from quietarm.views.pictures.axes import TITLE, new_figure
 from quietarm.views.pictures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK
 from quietarm.views.pictures.motion import Motions, draw_quantity, lines_of
@@ -85,12 +85,13 @@ class Film:
 
         ValueError where the name ends in something else, or there is no ffmpeg.
         """
-        name = format_of(Path(path))
-        if not FORMATS[name].is_film:
+        name = Path(path).suffix.lower().removeprefix(".")
+        if name not in _WRITERS:
             raise ValueError(f"{path} is no film; end its name in .gif or .mp4")
-        write_whole(path, self._content(name, report))
+        write_whole(path, self.content(name, report))
 
-    def _content(self, name: str, report: Callable[[int, int], object]) -> bytes:
+    def content(self, name: str, report: Callable[[int, int], object]) -> bytes:
+        """What a file of a kind holds, gif or mp4; ValueError where there is no ffmpeg."""
         if name == "mp4" and not FFMpegWriter.isAvailable():
             raise ValueError(
                 "an mp4 needs the program ffmpeg, which is not found here; install it, or make a "
@@ -112,7 +113,7 @@ class Film:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a gif, so that it needs no server."""
-        content = base64.b64encode(self._content("gif", lambda done, total: None)).decode()
+        content = base64.b64encode(self.content("gif", lambda done, total: None)).decode()
         return f'<img alt="structures in motion" src="data:image/gif;base64,{content}"/>'
 
 

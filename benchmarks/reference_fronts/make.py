@@ -27,9 +27,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.planning.plan_along import plan_from_starts
-from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.residual_limit import ResidualLimit
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.solvers.ipopt import Ipopt
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -110,11 +108,10 @@ def _better(
     assert isinstance(steps, int)
     try:
         coefficients = None if guess is None else guess.coefficients
-        setup = Setup(solver, bound, starts, SEED, steps, coefficients)
+        asked = Request(front.task, front.profile, solver, bound, starts, SEED, steps, coefficients)
         # not `plan_move`: a front's residual is that at the samples of an uncertain plant
-        limit = ResidualLimit(point.residual)
-        request = PlanRequest(front.task, front.profile, setup, limit)
-        plan, _ = plan_from_starts(request, request.starts)
+        request = asked.within(point.residual)
+        plan, _ = plan_from_starts(request, request.guesses)
     except QuietarmError:
         return point
     found = FrontPoint(plan.coefficients, plan.residual, plan.energy)

@@ -25,7 +25,7 @@ from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, Tolerances, certify
 from quietarm.ocp.record import versions
 from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Transcription
+from quietarm.ocp.solvers.problem import STILL, Program
 from quietarm.ocp.solvers.sqp import Sqp
 
 STEPS = 500
@@ -39,12 +39,12 @@ _AGREEMENT = 1e-4
 """Share by which the energies of the solver and of CVODES may differ before steps are doubled."""
 
 
-class FineTranscription(Transcription):
+class FineProgram(Program):
     """A task whose residual is sampled finely."""
 
     @cached_property
     def tip_rows(self) -> list[NDArray[np.float64]]:
-        """As of a `Transcription`, at `RADIANS`."""
+        """As of a `Program`, at `RADIANS`."""
         return [vibration.rows_every(RADIANS) for vibration in after_arrival(self.task)]
 
 
@@ -54,11 +54,11 @@ def polished(front: Front, bound: float) -> tuple[Front, list[float]]:
     A gain is a share of the energy that the point had, at its residual or a smaller one.
     """
     points = list(front.points)
-    transcription = FineTranscription.of(front.task, front.profile, STEPS)
+    program = FineProgram.of(front.task, front.profile, STEPS)
     before = [point.energy for point in points]
     places, reach = list(range(len(points))), 0
     for _ in range(ROUNDS):
-        found = _solved_from_neighbours(transcription, points, places, reach, bound)
+        found = _solved_from_neighbours(program, points, places, reach, bound)
         improved = set[int]()
         for place, motion in found.items():
             if motion.energy < points[place].energy * (1 - BETTER):
@@ -76,7 +76,7 @@ def polished(front: Front, bound: float) -> tuple[Front, list[float]]:
 
 
 def _solved_from_neighbours(
-    transcription: Transcription,
+    program: Program,
     points: Sequence[FrontPoint],
     places: Sequence[int],
     reach: int,
@@ -86,15 +86,15 @@ def _solved_from_neighbours(
 
     From the points themselves, and from so many neighbours on either side.
     """
-    problems = list[NonlinearProgram]()
+    problems = list[Program]()
     starts = list[list[NDArray[np.float64]]]()
     for place in places:
         residual = points[place].residual
         limits = (
             Limit.of_residual(residual if residual > STILL else 0.0),
-            *transcription.task.limits,
+            *program.task.limits,
         )
-        problems.append(NonlinearProgram(transcription, Scalarization(limits, bound)))
+        problems.append(program.asking(limits=limits, bound=bound))
         near = points[max(place - reach, 0) : place + reach + 1]
         starts.append([np.array(point.coefficients) for point in near])
     solutions = best_of_starts(problems, starts, Sqp(), warm=True, leave=False)
@@ -108,22 +108,22 @@ def _solved_from_neighbours(
     found = dict[int, FrontPoint]()
     for place, outcome in zip(solved, outcomes):
         if isinstance(outcome, Certified):
-            point = _judged(transcription, outcome)
+            point = _judged(program, outcome)
             if point is not None and _within(point, points[places[place]]):
                 found[places[place]] = point
     return found
 
 
-def _judged(transcription: Transcription, outcome: Certified) -> FrontPoint | None:
+def _judged(program: Program, outcome: Certified) -> FrontPoint | None:
     """A certified motion as a point with the figures of CVODES; None where it breaks a limit."""
-    task = transcription.task
-    coefficients = transcription.profile.checked(outcome.solution.coefficients)
-    motion = Candidate.of_profile(task, transcription.profile, coefficients)
+    task = program.task
+    coefficients = program.profile.checked(outcome.solution.coefficients)
+    motion = Candidate.of_profile(task, program.profile, coefficients)
     try:
         figures = motion.residual, motion.energy
     except QuietarmError:
         return None
-    nominal = Candidate.of_profile(task.certain, transcription.profile, coefficients)
+    nominal = Candidate.of_profile(task.certain, program.profile, coefficients)
     if nominal.exceeded(task.limits, BETTER):
         return None
     return FrontPoint(coefficients, *figures)

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import pi
 
 import quietarm as qa
+from quietarm.studies.reproduce.paper import paper_points
 from quietarm.views import trade_off
 
 
@@ -19,4 +20,4 @@ def page_of_fronts():
         "Arm on a flexible link": qa.epsilon_front(half, bound=0.5),
         "searched": qa.search(sixth, algorithm="nsga2", bound=0.2, seed=0),
     }
-    return trade_off(fronts)
+    return trade_off(fronts, known_points=paper_points)

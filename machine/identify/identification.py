@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import tau
 
@@ -232,7 +232,9 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
         if not free:
             raise ValueError("free names no parameter; name one, or leave it out")
         refuse_unknown(plant, free, also=())
+        _refuse_undeclared(plant, free)
         return [*dict.fromkeys(free)]
+    _refuse_undeclared(plant, plant.measured)
     names = [name for name in plant.measured if is_modal(plant, name)]
     if "torque" in kinds:
         names += [
@@ -240,10 +242,24 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
         ]
     if not names:
         raise ValueError(
-            f"{plant.name} has no parameter in rad/s and none that begins with zeta; name what is "
-            "sought by free"
+            f"{plant.name} has no parameter that is a mode's frequency or damping; name what is "
+            "sought by free, or declare its kind by qa.parameter"
         )
     return names
+
+
+def _refuse_undeclared(plant: Plant, names: Iterable[str]) -> None:
+    """ValueError where a name is that of a damping ratio, and its kind is not declared.
+
+    Version 2.0.0 took it for one by its name.
+    """
+    declared = {entry.name: entry.metadata.get("kind") for entry in plant.parameter_fields()}
+    for name in names:
+        if name.startswith("zeta") and declared[name] is None:
+            raise ValueError(
+                f"{plant.name} does not say what {name} is; write it with qa.parameter(..., "
+                "kind='damping') if it is the damping ratio of a mode, else kind='other'"
+            )
 
 
 def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dict[str, str]]:

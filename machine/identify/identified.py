@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import JointMotion, Plant
+from quietarm.models.plant import DAMPING, FREQUENCY
 from quietarm.ocp.checks import IF_STATED
-from quietarm.ocp.saved import Saved
+from quietarm.ocp.saved import Answer
 from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
@@ -127,7 +128,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Identified(Saved):
+class Identified(Answer):
     """A plant that is identified from recordings.
 
     Attributes
@@ -153,6 +154,7 @@ class Identified(Saved):
 
     kind: ClassVar[str] = "machine"
     version: ClassVar[int] = 2
+    sealed: ClassVar[bool] = False
 
     plant: Plant
     estimates: tuple[Estimate, ...]
@@ -246,8 +248,8 @@ def in_torque_alone(plant: Plant, name: str) -> bool:
 
 
 def is_frequency(plant: Plant, name: str) -> bool:
-    """Whether a parameter is the frequency of a mode, by its unit."""
-    return plant.units()[name] == "rad/s"
+    """Whether a parameter is the frequency of a mode."""
+    return plant.parameter_kinds()[name] == FREQUENCY
 
 
 def is_modal(plant: Plant, name: str) -> bool:
@@ -256,8 +258,8 @@ def is_modal(plant: Plant, name: str) -> bool:
 
 
 def is_damping(plant: Plant, name: str) -> bool:
-    """Whether a parameter is the damping ratio of a mode, by its name."""
-    return name.startswith("zeta") and not is_frequency(plant, name)
+    """Whether a parameter is the damping ratio of a mode."""
+    return plant.parameter_kinds()[name] == DAMPING
 
 
 def values_of(plant: Plant, names: Sequence[str]) -> Array:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.recordings.recording import Recording, noise_of
-from quietarm.machine.recordings.running import running_maximum
 
 Array = NDArray[np.float64]
 
@@ -113,8 +112,11 @@ def _usual(residual: Array) -> Array:
     size = len(residual) // count
     usual = 1.4826 * np.median(sizes[: count * size].reshape(count, size), axis=1)
     blocks = np.minimum(np.arange(len(residual)) // size, count - 1)
-    return running_maximum(usual, 3)[blocks]
+    return _largest_nearby(usual, 1)[blocks]
 
 
 def _largest_nearby(sizes: Array, reach: int) -> Array:
-    return running_maximum(sizes, 2 * reach + 1)
+    from scipy.ndimage import maximum_filter1d  # slow to load
+
+    largest: Array = maximum_filter1d(sizes, 2 * reach + 1, mode="nearest")
+    return largest

@@ -13,8 +13,9 @@ from quietarm.machine import Recording
 from quietarm.machine.recordings.recording import MOST_ANGLE
 from quietarm.machine.tables.column_units import UNITS, unknown_ending
 from quietarm.machine.tables.table import Table, read_table, unused_in_words
-from quietarm.models.checks import quoted
-from quietarm.models.joint_motion import ROTARY, joint_label
+from quietarm.models.dimensions import words_of
+from quietarm.models.joint_motion import ROTARY
+from quietarm.models.number_checks import quoted
 from quietarm.ocp import FileFormatError
 
 Array = NDArray[np.float64]
@@ -109,7 +110,7 @@ def _with_time(table: Table, columns: Columns) -> dict[str, Sequence[str]]:
 
 def _factor(table: Table, heading: str, quantity: str, columns: Columns) -> float:
     """What one of a column is in SI units, of a kind of joint."""
-    label = joint_label(quantity, columns.joint)
+    label = words_of(quantity).of(columns.joint)
     unit = columns.units.get(quantity) or columns.units.get(label, "")
     scale = columns.scales.get(quantity, columns.scales.get(label))
     return table.factor(heading, label, unit, scale, option=quantity)
@@ -139,7 +140,7 @@ def _without_unit(table: Table, named: Mapping[str, Sequence[str]], columns: Col
     """How columns are taken whose names end in what may be a unit and is no known one."""
     notes = list[str]()
     for quantity in _NEED_A_SCALE:
-        label = joint_label(quantity, columns.joint)
+        label = words_of(quantity).of(columns.joint)
         given = {**columns.units, **columns.scales}
         for heading in named.get(quantity, ()):
             column = table.find(heading)

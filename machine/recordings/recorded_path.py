@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from quietarm.machine.recordings.clocks import holes, running
 from quietarm.machine.recordings.recording import MOST_ANGLE
 from quietarm.machine.tables.table import Table, read_table, unused_in_words
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models.dimensions import ANGLE, WAY
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.profiles.free_motion import FreeMotion
 
@@ -41,7 +42,7 @@ def read_path(path: Path, joint: str = ROTARY) -> RecordedPath:
     from scipy.interpolate import CubicSpline  # not at the top: it takes long to load
 
     table = read_table(path)
-    label = joint_label("angle", joint)
+    label = ANGLE.of(joint)
     name, begin = (
         table.first(quantity, "name it so in its heading") for quantity in (label, "time")
     )
@@ -103,8 +104,8 @@ def _check(path: Path, time: Array, angle: Array, joint: str) -> None:
     most_rows = 5000
     # a speed so many times that of three to six points before and after it is a jump
     jump = 20.0
-    label = joint_label("angle", joint)
-    unit = joint_unit("rad", joint)
+    label = ANGLE.of(joint)
+    unit = WAY.of(joint)
     if not least_rows <= len(time) <= most_rows:
         raise FileFormatError(
             f"{path} has {len(time)} rows; give {least_rows} to {most_rows}, for a move of a "

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from quietarm.machine.recordings.clocks import holes, holes_in_words, running
 from quietarm.machine.recordings.stamps import mended
-from quietarm.models.checks import not_negative
+from quietarm.models.number_checks import not_negative
 from quietarm.ocp.checks import instance, several
 
 Array = NDArray[np.float64]

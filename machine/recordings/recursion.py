@@ -1,4 +1,7 @@
-"""Recursions of the first order over many samples, without a loop over them."""
+"""Recursions of the first order over many samples, without a loop over them.
+
+`scipy.signal.lfilter` gives the same as fast, and takes 0.35 s to load: a quarter of an `identify`.
+"""
 
 from __future__ import annotations
 

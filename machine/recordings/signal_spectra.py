@@ -1,4 +1,7 @@
-"""Spectra of stretches of a signal, and their peaks."""
+"""Spectra of stretches of a signal, and their peaks.
+
+`scipy.signal.spectrogram` and `find_peaks` give the same, and take 0.35 s to load.
+"""
 
 from __future__ import annotations
 

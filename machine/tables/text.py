@@ -45,8 +45,6 @@ def read_text(content: bytes, strict: bool) -> TextColumns:
     """
     lines = [line.strip(" ") for line in _decode(content).splitlines()]
     filled = [k for k, line in enumerate(lines) if line.strip() and not _is_rule(line)]
-    while filled and _counts_rows(lines[filled[-1]]):
-        filled.pop()
     if not filled:
         raise FileFormatError("it is empty; give rows of numbers")
     data = [k for k in filled if lines[k].lstrip()[0] not in "#%"]
@@ -88,15 +86,6 @@ def read_text(content: bytes, strict: bool) -> TextColumns:
 def _is_rule(line: str) -> bool:
     """Whether a line only separates a heading from its rows, as |---|:--:| does."""
     return "--" in line and not line.strip("-|+:= \t")
-
-
-def _counts_rows(line: str) -> bool:
-    """Whether a line says how many rows a query has, as databases write it below a table.
-
-    ``(4200 rows)`` of psql, ``4200 rows in set (0.01 sec)`` of MySQL, ``(4200 rows affected)``.
-    """
-    count = re.compile(r"\(?[\d,]+ rows? ?(affected|in set.*|selected.*)?\)?", re.IGNORECASE)
-    return bool(count.fullmatch(line.strip()))
 
 
 def _decode(content: bytes) -> str:

@@ -1,4 +1,4 @@
-"""The searches themselves: VEPSO, NSGA-II, and what is asked of an algorithm of the user's own.
+"""The searches themselves: VEPSO, NSGA-II, and what is mended of pymoo's.
 
-It may import `objective` and `ocp`, and knows nothing of runs and checkpoints.
+It may import `evaluation`, `problems` and `ocp`, and knows nothing of names, runs and checkpoints.
 """

@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics.algorithms.array_algorithm import Array
 from quietarm.metaheuristics.algorithms.moead_de import ScaledMOEAD
-from quietarm.metaheuristics.objective.population import search_steps
+from quietarm.metaheuristics.evaluation.population import search_steps
 from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.ocp.cost import COST
-from quietarm.ocp.front.curve import Curve
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.front.tradeoff import Tradeoff
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.solvers.sqp import Sqp
 
 Rows = NDArray[np.int64]
@@ -69,8 +69,11 @@ class MemeticMOEAD(ScaledMOEAD):
         super()._setup(problem, **options)
         self._function = function
         steps = search_steps(function.task, function.profile)
-        setup = Setup(Sqp(iterations=self.gradient_iterations), function.bound, 1, steps=steps)
-        self._curve = Curve.begin(function.task, function.profile, setup)
+        solver = Sqp(iterations=self.gradient_iterations)
+        request = Request(
+            function.task, function.profile, solver, function.bound, starts=1, steps=steps
+        )
+        self._tradeoff = Tradeoff.begin(request)
 
     def propose(self) -> Array:
         """The offspring, and after them what the gradient improves in this generation."""
@@ -95,11 +98,11 @@ class MemeticMOEAD(ScaledMOEAD):
         limits[0] = 0.0
         limits[-1] = np.inf
         before = COST.copy()
-        problems = [self._curve.problem(float(limit)) for limit in limits]
-        solutions = self._curve.solver.solve(problems, list(X[rows]), warm=True)
+        problems = [self._tradeoff.problem(float(limit)) for limit in limits]
+        solutions = self._tradeoff.solver.solve(problems, list(X[rows]), warm=True)
         spent = COST.since(before)
         of_gradient = 1 + X.shape[1]
-        scenarios = len(self._curve.transcription.errors)
+        scenarios = len(self._tradeoff.program.errors)
         self._function.charge((spent.gradients * of_gradient + spent.candidates) // scenarios)
         improved = np.array([solution.coefficients for solution in solutions])
         improved = improved[np.isfinite(improved).all(axis=1)]

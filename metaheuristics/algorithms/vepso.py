@@ -32,7 +32,7 @@ from quietarm.metaheuristics.algorithms.velocity import (
     Array,
     VelocityRule,
 )
-from quietarm.metaheuristics.objective.population import UNUSABLE
+from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.ocp.checks import positive, whole
 
 

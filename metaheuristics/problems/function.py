@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.objective.population import (
+from quietarm.metaheuristics.evaluation.population import (
     measured_figures,
     replace_failures,
     search_evaluator,

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.archive import Archive
-from quietarm.metaheuristics.objective.noise import Noise, times_evaluated
-from quietarm.metaheuristics.objective.population import UNUSABLE
+from quietarm.metaheuristics.evaluation.noise import Noise, times_evaluated
+from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import table_of, takes, whole

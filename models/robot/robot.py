@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import copy
-import hashlib
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
-from functools import cached_property, lru_cache
-from itertools import product
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from numbers import Real
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar
 
-import casadi as ca
 import numpy as np
 
 from quietarm.interrupts import interruptible
-from quietarm.models.checks import (
+from quietarm.models import dimensions
+from quietarm.models.drawing import Body
+from quietarm.models.joint_motion import (
+    Array,
+    Expression,
+    JointMotion,
+    Modes,
+    is_zero,
+    kind_of_joints,
+)
+from quietarm.models.notes import Note
+from quietarm.models.number_checks import (
     finite,
     has_no,
     listed,
@@ -28,34 +35,16 @@ from quietarm.models.checks import (
     quoted,
     whole,
 )
-from quietarm.models.drawing import Body
-from quietarm.models.joint_motion import (
-    LINEAR,
-    ROTARY,
-    Array,
-    Expression,
-    JointMotion,
-    Modes,
-    is_zero,
-    joint_unit,
-    kind_of_joints,
-)
-from quietarm.models.notes import Note
 from quietarm.models.plant import Plant, content, parameter
-from quietarm.models.robot.beam import Beam
-from quietarm.models.robot.dynamics import Dynamics
-from quietarm.models.robot.files import read_text
-from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.following import Following, followers_of, held_position
-from quietarm.models.robot.full import FullRobot
-from quietarm.models.robot.mechanism import BEAM_END, GROUND, Mechanism, build_mechanism
-from quietarm.models.robot.modes import as_measured, modes_at, sag_at, tip_offset
-from quietarm.models.robot.path import GeometricPath
-from quietarm.models.robot.piecewise import Place
-from quietarm.models.robot.robot_file import read_robot
-from quietarm.models.robot.robot_notes import mimics_nothing, notes_of, notes_of_text
-from quietarm.models.robot.stick_figure import stick_figure_of
-from quietarm.models.robot.tables import (
+from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
+from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.dynamics.robot_parts import Limits
+from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
+from quietarm.models.robot.on_path.directions import lines_in
+from quietarm.models.robot.on_path.full import FullRobot
+from quietarm.models.robot.on_path.path_tables import (
     EXCITED,
     FARTHEST,
     MOST_MODES,
@@ -69,11 +58,18 @@ from quietarm.models.robot.tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.urdf import PRISMATIC, Urdf, read_urdf
-from quietarm.models.robot.urdf_text import as_read_before, dynamics_of
+from quietarm.models.robot.on_path.stick_figure import stick_figure_of
+from quietarm.models.robot.path.geometric_path import GeometricPath
+from quietarm.models.robot.path.piecewise import Place
+from quietarm.models.robot.robot_file import read_robot
+from quietarm.models.robot.robot_notes import notes_of, notes_of_text
+from quietarm.models.robot.text_files import read_text
+from quietarm.models.robot.urdf.following import Following, mimics_nothing
+from quietarm.models.robot.urdf.urdf_text import as_read_before, dynamics_of
 
-STANDARD_GRAVITY = 9.80665
-"""[m/s^2], of the SI."""
+if TYPE_CHECKING:
+    from quietarm.ocp import PointToPoint
+
 _MOST_MOVING = 100
 """Joints, whose equations are written in two seconds."""
 USUAL_MODES = 2
@@ -82,12 +78,8 @@ _OVER = 1e-9
 """By which a path may pass the range of a joint [rad or m]."""
 
 
-Limits = Mapping[str, Mapping[str, float]]
-"""By quantity, as speed, and joint; SI units."""
-
-
-@dataclass(frozen=True)
-class Robot:
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot(MovingRobot):
     """A robot from its URDF, with the flexibilities that it does not have.
 
     Parameters
@@ -139,26 +131,6 @@ class Robot:
     """
 
     example: ClassVar[str] = "a robot, as Robot.load('robot.yaml')"
-
-    urdf: str
-    joints: tuple[str, ...] = ()
-    held: Mapping[str, float] = field(default_factory=dict)
-    beam: Beam | None = None
-    elastic_joints: Mapping[str, Spring] = field(default_factory=dict)
-    springs: Mapping[str, Spring] = field(default_factory=dict)
-    base: Base | None = None
-    tip: str | None = None
-    gravity: tuple[float, float, float] = (0.0, 0.0, -STANDARD_GRAVITY)
-    rotor_inertia: Mapping[str, float] = field(default_factory=dict)
-    friction: Mapping[str, float] = field(default_factory=dict)
-    coulomb: Mapping[str, float] = field(default_factory=dict)
-    modes: int | Literal["excited"] | None = None
-    limits: Limits = field(default_factory=dict)
-    measured: Measured | None = None
-    positions: Mapping[str, tuple[float, float]] = field(
-        default_factory=dict, metadata={"if_stated": True}
-    )
-    remarks: tuple[Note, ...] = field(default=(), metadata={"if_stated": True})
 
     def __post_init__(self) -> None:
         urdf: object = self.urdf
@@ -228,6 +200,18 @@ class Robot:
         """
         return RobotOnPath(robot=self, path=path)
 
+    def task(self, path: GeometricPath, duration: float, **others: Any) -> PointToPoint:
+        """The move along a path within the robot's limits; other keywords of `PointToPoint`.
+
+        A limit that is given is in the place of the robot's own of that quantity.
+
+        Raises
+        ------
+        ValueError
+            As of `along` and of `PointToPoint`.
+        """
+        return self.along(path).task(1.0, duration, **others)
+
     @classmethod
     def of_saved(cls, entries: Any) -> Any:
         """The entries of a saved robot, such that they mean what they meant to who saved them."""
@@ -239,77 +223,6 @@ class Robot:
     def notes(self) -> tuple[Note, ...]:
         """What its files leave open, have wrong or have passed over, in one line each."""
         return (*self.remarks, *notes_of(self))
-
-    @cached_property
-    def followers(self) -> dict[str, Following]:
-        """The joints that follow others which move, by name."""
-        moving = (*self.joints, *self.springs)
-        followers = followers_of(self.description, self.held)
-        return {name: entry for name, entry in followers.items() if entry.leader in moving}
-
-    def held_position(self, joint: str) -> float:
-        """Where a joint is that neither is driven nor follows one that moves [rad or m]."""
-        return held_position(self.description, joint, self.held)
-
-    @cached_property
-    def description(self) -> Urdf:
-        """What the URDF says."""
-        return read_urdf(self.urdf)
-
-    @cached_property
-    def unscaled(self) -> Mechanism:
-        """The bodies, with the springs as they were given."""
-        return build_mechanism(self)
-
-    @cached_property
-    def mechanism(self) -> Mechanism:
-        """The bodies, with the springs as they were measured."""
-        return self.dynamics.mechanism
-
-    @cached_property
-    def dynamics(self) -> Dynamics:
-        """The equations, with the springs as they were measured."""
-        dynamics = Dynamics(self.unscaled)
-        return dynamics if self.measured is None else as_measured(dynamics, self.measured)
-
-    def dynamics_with(self, stiffness: float, payload: float) -> Dynamics:
-        """The equations with so many times the stiffness of all springs, and the mass at the tip.
-
-        Dampers keep the damping ratio where the stiffness changes, and their values where the mass
-        does.
-        """
-        dynamics = self.dynamics
-        if payload != 1:
-            dynamics = Dynamics(self.mechanism.loaded((payload - 1) * self.payload))
-        return dynamics if stiffness == 1 else dynamics.stiffened(stiffness)
-
-    @property
-    def payload(self) -> float:
-        """Mass at the end of the beam [kg]."""
-        return 0.0 if self.beam is None else self.beam.tip_mass
-
-    @cached_property
-    def digest(self) -> str:
-        """SHA-256 of all that it is made of."""
-        content = asdict(self)
-        del content["remarks"]
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-
-    def __hash__(self) -> int:
-        return hash(self.digest)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Robot) and self.digest == other.digest
-
-    def __reduce__(self) -> tuple[Any, ...]:  # what is computed from them is not sent along
-        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
-
-    def __repr__(self) -> str:
-        return f"Robot({self.description.name!r}, {self.digest[:12]!r})"
-
-    def kind_of(self, joint: str) -> str:
-        """Return the kind of a joint of the URDF by its name: rotary, or linear if it slides."""
-        return LINEAR if self.description.joints[joint].kind == PRISMATIC else ROTARY
 
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint, and of what follows it [rad or m]."""
@@ -366,27 +279,6 @@ class Robot:
         names = [name for name, entry in self.followers.items() if entry.leader == joint]
         return f" (with {' and '.join(names)}, following it)" if names else ""
 
-    def frequencies(self, q: Sequence[float] | Array) -> Array:
-        """Of all modes with the driven joints held at q [rad/s], under gravity.
-
-        ValueError where a spring is too soft to carry its load.
-        """
-        values, _ = modes_at(self.dynamics, np.asarray(q, float))
-        return values
-
-    def sag(self, q: Sequence[float] | Array) -> Array:
-        """How far the tip hangs below the robot that does not bend [m], in the tip's frame."""
-        dynamics = self.dynamics
-        q = np.asarray(q, float)
-        p = sag_at(dynamics, q)
-        return tip_offset(dynamics, self.tip_place, q, p)
-
-    @property
-    def tip_place(self) -> Any:
-        """Body and frame of the tip."""
-        assert self.tip is not None
-        return self.mechanism.links[self.tip]
-
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
 
@@ -397,7 +289,7 @@ class Robot:
             values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
             what = f"of {name} in {entry}"
             stiffness, damping = (
-                joint_unit(unit, self.kind_of(name)) for unit in ("N m/rad", "N m s/rad")
+                unit.of(self.kind_of(name)) for unit in (dimensions.STIFFNESS, dimensions.DAMPING)
             )
             found[name] = Spring(
                 positive(f"stiffness {what}", values.stiffness, stiffness),
@@ -627,6 +519,11 @@ class RobotOnPath(Plant):
         return self.robot.notes
 
     @property
+    def limits(self) -> Limits:
+        """The robot's, of its joints."""
+        return self.robot.limits
+
+    @property
     def followers(self) -> Mapping[str, tuple[int, Following]]:
         """The joints that follow driven ones: by name the number of that one, and how."""
         numbers = {name: number for number, name in enumerate(self.joint_names)}
@@ -685,7 +582,7 @@ class RobotOnPath(Plant):
     @property
     def in_full(self) -> FullRobot:
         """The equations with all springs, without tables and modes."""
-        return FullRobot(self)
+        return FullRobot(self.robot, self.path, self.stiffness, self.payload)
 
     @property
     def tip_names(self) -> tuple[str, ...]:
@@ -785,7 +682,7 @@ class RobotOnPath(Plant):
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The robot in space at a place of its path, as a stick figure."""
-        return stick_figure_of(self).bodies(angle, tips)
+        return stick_figure_of(self.robot, self.path).bodies(angle, tips)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Their rates [m/s]."""
@@ -861,56 +758,8 @@ def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:
     return sum(terms[1:], terms[0]) if terms else 0.0
 
 
-def coulomb_torques(robot: Robot, joints: Sequence[JointMotion]) -> list[Expression]:
-    """Coulomb friction of every driven joint by its speed [N m]; 0.0 where it has none.
-
-    That of joints that follow it is felt by virtual work.
-    """
-    torques = list[Expression]()
-    for name, joint in zip(robot.joints, joints):
-        torque = _coulomb(robot.coulomb.get(name, 0.0), joint.speed)
-        for follower, entry in robot.followers.items():
-            friction = robot.coulomb.get(follower, 0.0)
-            if entry.leader == name and friction and entry.multiplier:
-                turning = _coulomb(friction, entry.multiplier * joint.speed)
-                torque = torque + entry.multiplier * turning
-        torques.append(torque)
-    return torques
-
-
-def _coulomb(friction: float, speed: Expression) -> Expression:
-    turning = 0.0 if friction == 0 else speed / ca.sqrt(speed * speed + _CREEP**2)
-    return friction * turning
-
-
 _NO_INERTIA = 1e-6
 """Share of the inertia along the path that is left where the springs let all links go."""
-_CREEP = 0.01
-"""Speed [rad/s or m/s] at which Coulomb friction is 1 / sqrt(2) of itself."""
-
-
-@lru_cache
-def lines_in(dimensions: int) -> Array:
-    """Unit vectors of a line, a plane or space, of which one is near any direction."""
-    if dimensions == 1:
-        return np.ones((1, 1))
-    if dimensions == 2:
-        angles = np.pi * np.arange(_LINES_OF_A_PLANE) / _LINES_OF_A_PLANE
-        return np.column_stack([np.cos(angles), np.sin(angles)])
-    entries = range(-_STEPS_IN_SPACE, _STEPS_IN_SPACE + 1)
-    vectors = {
-        vector
-        for vector in product(entries, repeat=dimensions)
-        if math.gcd(*vector) == 1 and next(filter(None, vector)) > 0
-    }
-    lines = np.array(sorted(vectors), float)
-    return lines / np.linalg.norm(lines, axis=1)[:, None]
-
-
-_LINES_OF_A_PLANE = 8
-"""They are 22.5 degrees apart: 1 / cos of half of that is 1.02."""
-_STEPS_IN_SPACE = 2
-"""Whole numbers of a vector: 49 lines, of which one is within 18 degrees of any direction."""
 
 
 def _power(errors: Iterable[Expression], powers: Sequence[int]) -> Expression:

@@ -8,15 +8,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from quietarm.models.checks import clipped, has_no, listed, quoted
-from quietarm.models.joint_motion import LINEAR, ROTARY, joint_unit
+from quietarm.models.dimensions import DAMPING, EFFORT, INERTIA, STIFFNESS, Unit
+from quietarm.models.joint_motion import LINEAR, ROTARY
 from quietarm.models.notes import Note
-from quietarm.models.robot.beam import Beam
-from quietarm.models.robot.files import read_text, read_yaml
-from quietarm.models.robot.flexibility import Base, Measured, Spring
-from quietarm.models.robot.following import Following, bounds_of_leaders, followers_of
-from quietarm.models.robot.joint_limits import ByQuantity, JointLimits, read_joint_limits
-from quietarm.models.robot.urdf import PRISMATIC, UrdfJoint, read_urdf
+from quietarm.models.number_checks import clipped, has_no, listed, quoted
+from quietarm.models.robot.elastic.beam import Beam
+from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
+from quietarm.models.robot.text_files import read_text, read_yaml
+from quietarm.models.robot.urdf.following import Following, bounds_of_leaders, followers_of
+from quietarm.models.robot.urdf.joint_limits import ByQuantity, JointLimits, read_joint_limits
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC, UrdfJoint, read_urdf
 from quietarm.models.units import parse_quantity
 
 Read = Callable[[Any, str], Any]
@@ -53,9 +54,9 @@ def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "base": _base,
         "tip": _name,
         "gravity": partial(_several, unit="m/s^2"),
-        "rotor_inertia": of_joints(_quantity_of("kg m^2")),
-        "friction": of_joints(_quantity_of("N m s/rad")),
-        "coulomb": of_joints(_quantity_of("N m")),
+        "rotor_inertia": of_joints(_quantity_of(INERTIA)),
+        "friction": of_joints(_quantity_of(DAMPING)),
+        "coulomb": of_joints(_quantity_of(EFFORT)),
         "modes": lambda entry, _: entry,
         "limits": lambda entry, _: entry,
         "measured": _measured,
@@ -258,8 +259,8 @@ def _measured(entry: Any, what: str) -> Measured:
 
 def _spring(entry: Any, what: str, kind: str) -> Spring:
     units = {
-        "stiffness": joint_unit("N m/rad", kind),
-        "damping": joint_unit("N m s/rad", kind),
+        "stiffness": STIFFNESS.of(kind),
+        "damping": DAMPING.of(kind),
     }
     if not isinstance(entry, dict):
         return Spring(_number(entry, what, units["stiffness"]))
@@ -323,9 +324,9 @@ def _quantity(unit: str) -> Read:
     return lambda entry, what: _number(entry, what, unit)
 
 
-def _quantity_of(unit: str) -> ReadOfJoint:
-    """What reads a quantity of a joint, whose unit is given as of one that turns."""
-    return lambda entry, what, kind: _number(entry, what, joint_unit(unit, kind))
+def _quantity_of(unit: Unit) -> ReadOfJoint:
+    """What reads a quantity of a joint, in the unit of its kind."""
+    return lambda entry, what, kind: _number(entry, what, unit.of(kind))
 
 
 def _number(entry: Any, what: str, unit: str) -> float:

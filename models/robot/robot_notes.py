@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quietarm.models.checks import nearest_name, quoted
 from quietarm.models.notes import Note
-from quietarm.models.robot.following import held_position, limits_with_followers
-from quietarm.models.robot.urdf import PRISMATIC, Urdf
-from quietarm.models.robot.urdf_text import passed_over
-
-if TYPE_CHECKING:
-    from quietarm.models.robot.robot import Robot
+from quietarm.models.number_checks import quoted
+from quietarm.models.robot.dynamics.robot_parts import RobotParts
+from quietarm.models.robot.urdf.following import (
+    held_position,
+    limits_with_followers,
+    mimics_nothing,
+)
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC, Urdf
+from quietarm.models.robot.urdf.urdf_text import passed_over
 
 _MOST_NAMES = 5
 """Of links or joints that a note names."""
 
 
-def notes_of(robot: Robot) -> tuple[Note, ...]:
+def notes_of(robot: RobotParts) -> tuple[Note, ...]:
     """Return all notes that follow from what a robot is made of."""
     return (
         *_without_masses(robot),
@@ -50,7 +51,7 @@ def listed(names: Sequence[str]) -> str:
     return f"{shown} and {more} more" if more > 0 else shown
 
 
-def _without_masses(robot: Robot) -> Iterator[Note]:
+def _without_masses(robot: RobotParts) -> Iterator[Note]:
     """Of a robot whose motors move no mass of the URDF."""
     urdf = robot.description
     moved = set[str]()
@@ -87,7 +88,7 @@ def _millimetres(urdf: Urdf) -> Iterator[Note]:
         yield Note(urdf.hint_of_size)
 
 
-def _own_friction(robot: Robot) -> Iterator[Note]:
+def _own_friction(robot: RobotParts) -> Iterator[Note]:
     """Where the robot's friction stands in place of the URDF's."""
     joints = robot.description.joints
     for entry, of_urdf, unit, unit_of_sliding in (
@@ -105,7 +106,7 @@ def _own_friction(robot: Robot) -> Iterator[Note]:
             yield Note(f"{entry} as given in place of the URDF's {of_urdf}: {listed(differing)}")
 
 
-def _damping_of_passive_joints(robot: Robot) -> Iterator[Note]:
+def _damping_of_passive_joints(robot: RobotParts) -> Iterator[Note]:
     joints = robot.description.joints
     left_out = [
         name
@@ -119,7 +120,7 @@ def _damping_of_passive_joints(robot: Robot) -> Iterator[Note]:
         )
 
 
-def _held_followers(robot: Robot) -> Iterator[Note]:
+def _held_followers(robot: RobotParts) -> Iterator[Note]:
     """Joints that are held elsewhere than where the URDF has them follow another."""
     for name, position in robot.held.items():
         mimic = robot.description.joints[name].mimics
@@ -142,16 +143,7 @@ def _without_leader(urdf: Urdf) -> Iterator[Note]:
         yield Note(f"joints of the URDF are held, as it does not have what they mimic: {names}")
 
 
-def mimics_nothing(urdf: Urdf, joint: str) -> str:
-    """What a joint mimics that the URDF does not have, and the joint that is meant; or nothing."""
-    mimic = urdf.joints[joint].mimics if joint in urdf.joints else None
-    if mimic is None or mimic.joint in urdf.joints:
-        return ""
-    meant = nearest_name(mimic.joint, urdf.joints)
-    return f"mimics {quoted(mimic.joint)}{f' (did you mean {quoted(meant)}?)' if meant else ''}"
-
-
-def _without_ranges(robot: Robot) -> Iterator[Note]:
+def _without_ranges(robot: RobotParts) -> Iterator[Note]:
     """Driven joints that end nowhere, although the URDF does not call them continuous."""
     joints = robot.description.joints
     names = [name for name in robot.joints if not joints[name].continuous and joints[name].endless]
@@ -159,7 +151,7 @@ def _without_ranges(robot: Robot) -> Iterator[Note]:
         yield Note(f"the URDF has neither lower nor upper of {listed(names)}: taken as endless")
 
 
-def _decelerations(robot: Robot) -> Iterator[Note]:
+def _decelerations(robot: RobotParts) -> Iterator[Note]:
     """Limits of the acceleration that are the URDF's smaller ones of the deceleration."""
     urdf = robot.description
     accelerations = limits_with_followers(urdf, "acceleration", robot.held)

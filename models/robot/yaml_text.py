@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from quietarm.models.checks import clipped, quoted
+from quietarm.models.number_checks import clipped, quoted
 
 MOST_BYTES = 3_000_000
 """Of a text: a trajectory of ten thousand points, some ten seconds of reading."""

@@ -72,7 +72,7 @@ class Floor(MotionAnswer):
 
     kind: ClassVar[str] = "floor"
     version: ClassVar[int] = 4
-    earlier: ClassVar[tuple[int, ...]] = (3,)
+    read_by_2_0 = (3,)
     first_order: ClassVar[float] = 0.5
     """Ratio of successive falls of the energy where the error is proportional to the intervals'
     length; it is 1/4 where to its square."""

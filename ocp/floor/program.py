@@ -16,8 +16,8 @@ from quietarm.models.compiled import Compiled
 from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import Limit, Quantity
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion, joint_after
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -27,7 +27,7 @@ from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import march
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import PointToPoint
 
@@ -143,7 +143,7 @@ class FloorProgram:
         self.task = task
         self.smooth = smooth
         self._limits = task.limits
-        self._options = solver
+        self._ipopt = solver.as_kind(Ipopt)
         self._states = 2 + smooth + 2 * task.plant.modes
         joints = len(task.plant.joint_names)
         self._parts = NODES * joints if task.energy.absolute else 0
@@ -213,16 +213,16 @@ class FloorProgram:
         }
         counts = [sum(entry.numel() for entry in kind) for kind in (equal, positive)]
         upper = np.repeat([0.0, np.inf], counts)
-        return compile_nlp(nlp, self._ipopt(warm)), upper
+        return compile_nlp(nlp, self._options(warm)), upper
 
-    def _ipopt(self, warm: bool) -> dict[str, str | int | float]:
+    def _options(self, warm: bool) -> dict[str, str | int | float]:
         """Options of IPOPT; a floor takes a larger tolerance, and fewer iterations."""
         options = _WARM if warm else COLD
         return {
             **options,
-            **options_of(self._options),
-            "tol": self.larger_tolerance * self._options.tolerance,
-            "max_iter": min(options["max_iter"], self._options.iterations),
+            **self._ipopt.own_options,
+            "tol": self.larger_tolerance * self._ipopt.tolerance,
+            "max_iter": min(options["max_iter"], self._ipopt.iterations),
         }
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.curve import Curve, Progress, curve_of, no_report
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.tradeoff import Progress, Tradeoff, no_report
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes
 from quietarm.ocp.record import number_of_points
 from quietarm.ocp.solvers.choice import other_solver, stated_solver
-from quietarm.ocp.solvers.problem import NonlinearProgram, Transcription
+from quietarm.ocp.solvers.problem import Program
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
@@ -100,31 +100,31 @@ def cross_check(
     count = min(number_of_points(checked_points), len(front.points))
     if solver is None:
         solver = other_solver(stated_solver(front.record.settings) or Sqp())
-    curve = curve_of(front, starts=4, solver=solver)
+    tradeoff = Tradeoff.of_front(front, starts=4, solver=solver)
     checked = np.linspace(0, len(front.points) - 1, count).round().astype(int)
     compared: list[Compared] = []
     for i in checked:
-        compared.append(_compare(curve, front.points[i]))
+        compared.append(_compare(tradeoff, front.points[i]))
         report(len(compared), count)
     return CrossCheck(solver, tuple(compared))
 
 
-def _compare(curve: Curve, point: FrontPoint, same: float = 1e-6) -> Compared:
+def _compare(tradeoff: Tradeoff, point: FrontPoint, same: float = 1e-6) -> Compared:
     """A point by both, within the same limits at the nodes of the same steps.
 
     Energies that differ by no more than the share `same` agree.
     """
-    transcription, scalarization = curve.problem()
+    problem = tradeoff.problem()
     coefficients = np.array(point.coefficients)
-    motion = by_cvodes(transcription, coefficients)
-    limits = tuple(_limits_at_nodes(transcription, motion, coefficients))
-    problem = NonlinearProgram(transcription, scalarization._replace(limits=limits))
+    motion = by_cvodes(problem, coefficients)
+    limits = _limits_at_nodes(problem, motion, coefficients)
+    problem = problem.asking(limits=tuple(limits))
     best = np.nan
-    starts = [(start, False) for start in curve.starts]
+    starts = [(start, False) for start in tradeoff.starts]
     for start, warm in [*starts, (coefficients, True)]:
-        (solution,) = curve.solver.solve([problem], [start], warm=warm)
+        (solution,) = tradeoff.solver.solve([problem], [start], warm=warm)
         if solution.status.solved:
-            energy = by_cvodes(transcription, solution.coefficients).energy
+            energy = by_cvodes(problem, solution.coefficients).energy
             best = float(np.nanmin([best, energy]))
         if best <= motion.energy * (1 + same):
             break
@@ -132,15 +132,15 @@ def _compare(curve: Curve, point: FrontPoint, same: float = 1e-6) -> Compared:
 
 
 def _limits_at_nodes(
-    transcription: Transcription, motion: Candidate, coefficients: NDArray[np.float64]
+    problem: Program, motion: Candidate, coefficients: NDArray[np.float64]
 ) -> Iterator[Limit]:
     """The limits that a point's motion keeps at the nodes of the steps.
 
     A limit that it is at was tightened until it held between the nodes as well.
     """
-    at_nodes = transcription.measure(transcription.evaluate(coefficients))
+    at_nodes = problem.measure(problem.evaluate(coefficients))
     peaks = at_nodes.peaks_of(0)
-    for limit in transcription.task.limits:
+    for limit in problem.task.limits:
         if limit.keeps(limit.peak_of(motion), -OVERRUN):
             yield limit
         else:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Certificate, Curve
+from quietarm.ocp.figures import ENERGY
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Tradeoff
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
     best_of_starts,
@@ -18,18 +18,17 @@ from quietarm.ocp.planning.best_of_starts import (
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify_one
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
-    NonlinearProgram,
+    Program,
     Solution,
-    Transcription,
     still_of,
 )
 
 
 @dataclass(frozen=True)
 class Ends:
-    """The ends of a front, on a curve of the steps that the end of least residual needs."""
+    """The ends of a front, on a trade-off of the steps that the end of least residual needs."""
 
-    curve: Curve
+    tradeoff: Tradeoff
     still: Solution
     cheapest: Solution
     certificates: tuple[Certificate, Certificate]
@@ -47,68 +46,68 @@ class Ends:
     @property
     def are_one(self) -> bool:
         """Whether the two ends are the same motion, and there is no front between."""
-        return self.width <= still_of(self.curve.task) or self.height <= SAME * self.still.energy
+        return self.width <= still_of(self.tradeoff.task) or self.height <= SAME * self.still.energy
 
 
-def find_ends(curve: Curve) -> Ends:
+def find_ends(tradeoff: Tradeoff) -> Ends:
     """Find the motion of least energy that arrives at rest, and that whose residual is free.
 
     The number of steps is raised until CVODES agrees at the end of least residual. If no motion
     arrives at rest, this end is the motion of least residual; for an uncertain task it is where a
     smaller residual would cost too much energy. Errors are those of `solve_from_starts`.
     """
-    if curve.task.uncertainty is not None:
-        return _of_scenarios(curve)
-    end_at_rest = _at_rest(curve)  # first: it settles the number of steps
+    if tradeoff.task.uncertainty is not None:
+        return _of_scenarios(tradeoff)
+    end_at_rest = _at_rest(tradeoff)  # first: it settles the number of steps
     if end_at_rest is not None:
-        curve = end_at_rest.curve
-    cheapest, _ = solve_from_starts(curve.problem(), curve.starts, curve.solver)
-    still = end_at_rest or _least_residual(curve, cheapest)
-    certificates = still.certificate, _certify_cheapest(curve, cheapest)
-    return Ends(curve, still.solution, cheapest, certificates)
+        tradeoff = end_at_rest.tradeoff
+    cheapest, _ = solve_from_starts(tradeoff.problem(), tradeoff.starts, tradeoff.solver)
+    still = end_at_rest or _least_residual(tradeoff, cheapest)
+    certificates = still.certificate, _certify_cheapest(tradeoff, cheapest)
+    return Ends(tradeoff, still.solution, cheapest, certificates)
 
 
 class _Still(NamedTuple):
-    """The end at rest, or of least residual, on a curve of the steps that it takes."""
+    """The end at rest, or of least residual, on a trade-off of the steps that it takes."""
 
-    curve: Curve
+    tradeoff: Tradeoff
     solution: Solution
     certificate: Certificate
 
 
-def _certify_cheapest(curve: Curve, cheapest: Solution) -> Certificate:
-    (end,) = curve.certify([(cheapest, {RESIDUAL_LIMIT: cheapest.residual})], free=True)
+def _certify_cheapest(tradeoff: Tradeoff, cheapest: Solution) -> Certificate:
+    (end,) = tradeoff.certify([(cheapest, {RESIDUAL_LIMIT: cheapest.residual})], free=True)
     return end
 
 
-def _at_rest(curve: Curve) -> _Still | None:
+def _at_rest(tradeoff: Tradeoff) -> _Still | None:
     """The motion at rest; None where there is none."""
-    solver = curve.solver
+    solver = tradeoff.solver
     try:
-        problem = curve.problem(0.0)
-        first, _ = solve_from_starts(problem, curve.starts, solver)
-        rough = certify_one(problem, first, solver, Tolerances(curve.tolerances.energy))
-        curve = replace(curve, transcription=rough.problem.transcription)
-        end = certify_one(curve.problem(0.0), rough.solution, solver)
+        problem = tradeoff.problem(0.0)
+        first, _ = solve_from_starts(problem, tradeoff.starts, solver)
+        rough = certify_one(problem, first, solver, Tolerances(tradeoff.tolerances.energy))
+        tradeoff = replace(tradeoff, program=rough.problem)
+        end = certify_one(tradeoff.problem(0.0), rough.solution, solver)
     except SolverFailedError:
         return None
-    return _Still(curve, rough.solution, curve.point_of(end))
+    return _Still(tradeoff, rough.solution, tradeoff.certificate_of(end))
 
 
-def _least_residual(curve: Curve, cheapest: Solution) -> _Still:
+def _least_residual(tradeoff: Tradeoff, cheapest: Solution) -> _Still:
     """The motion of least residual, and of motions of that residual the cheapest.
 
     Limits are tightened while the residual is minimised: at the least residual there is no room to
     tighten them in.
     """
-    solver = curve.solver
-    least = least_peaks_of(curve.problem(), curve.starts, solver).get(RESIDUAL)
+    solver = tradeoff.solver
+    least = least_peaks_of(tradeoff.problem(), tradeoff.starts, solver).get(RESIDUAL)
     if least is None:
-        return _Still(curve, cheapest, _certify_cheapest(curve, cheapest))
-    limits = curve.problem().scalarization.limits
+        return _Still(tradeoff, cheapest, _certify_cheapest(tradeoff, cheapest))
+    limits = tradeoff.problem().limits
     try:
         reached = certify_one(
-            curve.problem(minimise={RESIDUAL: 1.0}),
+            tradeoff.problem(minimise={RESIDUAL: 1.0}),
             least,
             solver,
             limits=limits,
@@ -118,30 +117,30 @@ def _least_residual(curve: Curve, cheapest: Solution) -> _Still:
         still = solution if solution.status.solved else reached.solution
         end = certify_one(problem, still, solver, OF_A_PLAN, limits)
     except SolverFailedError:
-        (failed,) = curve.certify([(least, {RESIDUAL_LIMIT: least.residual})])
-        return _Still(curve, least, failed)
-    certificate = curve.point_of(end)
+        (failed,) = tradeoff.certify([(least, {RESIDUAL_LIMIT: least.residual})])
+        return _Still(tradeoff, least, failed)
+    certificate = tradeoff.certificate_of(end)
     iterations = least.iterations + certificate.iterations
-    return _Still(curve, still, certificate._replace(iterations=iterations))
+    return _Still(tradeoff, still, certificate._replace(iterations=iterations))
 
 
-def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> NonlinearProgram:
+def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> Program:
     """The problem of least energy within the residual that was reached.
 
     By the share `between_samples` the residual may exceed there what it is at its samples.
     """
-    transcription, scalarization = reached.problem
     residual = Limit.of_residual(reached.solution.residual * (1 + between_samples))
-    limits = [limit for limit in scalarization.limits if limit.name != RESIDUAL]
-    cheapest = scalarization._replace(
+    limits = [limit for limit in reached.problem.limits if limit.name != RESIDUAL]
+    return reached.problem.asking(
         limits=(*limits, residual),
         minimise=LEAST_ENERGY,
         offset=0.0,
     )
-    return NonlinearProgram(transcription, cheapest)
 
 
-def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3)) -> Ends:
+def _of_scenarios(
+    tradeoff: Tradeoff, energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3)
+) -> Ends:
     """The ends of an uncertain task, from those of the nominal one.
 
     Its energy is that of the nominal plant, so the cheapest motion is the same. Neither rest in all
@@ -150,18 +149,18 @@ def _of_scenarios(curve: Curve, energy_weights: tuple[float, ...] = (1.0, 0.1, 0
     last weight, reducing the residual by a further hundredth of the cheapest end's would cost five
     times the energy of the nominal plant's motion at rest.
     """
-    profile = curve.transcription.profile
-    nominal = find_ends(Curve.begin(curve.task.certain, profile, curve.setup))
-    steps = nominal.curve.transcription.steps
-    curve = replace(curve, transcription=Transcription(curve.task, profile, steps))
+    profile = tradeoff.program.profile
+    nominal = find_ends(Tradeoff.begin(tradeoff.request.on(tradeoff.task.certain)))
+    steps = nominal.tradeoff.program.steps
+    tradeoff = replace(tradeoff, program=Program(tradeoff.task, profile, steps))
     starts = [nominal.cheapest.coefficients, nominal.still.coefficients]
-    (cheapest,) = best_of_starts([curve.problem()], [starts], curve.solver)
+    (cheapest,) = best_of_starts([tradeoff.problem()], [starts], tradeoff.solver)
     still = cheapest
-    for weight in energy_weights if cheapest.residual > still_of(curve.task) else ():
+    for weight in energy_weights if cheapest.residual > still_of(tradeoff.task) else ():
         weights = {RESIDUAL: 1 / cheapest.residual, ENERGY: weight / nominal.still.energy}
-        problem = curve.problem(minimise=weights)
-        (solution,) = curve.solver.solve([problem], [still.coefficients])
+        problem = tradeoff.problem(minimise=weights)
+        (solution,) = tradeoff.solver.solve([problem], [still.coefficients])
         if solution.status.solved:
             still = solution
-    (certificate,) = curve.certify([(still, {RESIDUAL_LIMIT: still.residual})])
-    return Ends(curve, still, cheapest, (certificate, _certify_cheapest(curve, cheapest)))
+    (certificate,) = tradeoff.certify([(still, {RESIDUAL_LIMIT: still.residual})])
+    return Ends(tradeoff, still, cheapest, (certificate, _certify_cheapest(tradeoff, cheapest)))

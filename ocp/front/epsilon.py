@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import positive, several, takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Progress, no_report
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.surface import surface_front
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Progress, Tradeoff, no_report
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import digits, number_of_points
 from quietarm.ocp.solvers.problem import STILL, Solution
@@ -92,11 +92,11 @@ def epsilon_front(
     points = number_of_points(points)
     names = checked_objectives(objectives)
     residuals = [positive("residual", residual, "m") for residual in several("at", at, "residuals")]
-    setup = Setup(solver, bound, starts, seed, steps)
+    request = Request(task, profile, solver, bound, starts, seed, steps)
     if names != RESIDUAL_AND_ENERGY:
-        front = surface_front(task, profile, setup, names, points, residuals, report)
+        front = surface_front(request, names, points, residuals, report)
         return front.restated(seconds=time.perf_counter() - began)
-    ends = find_ends(Curve.begin(task, profile, setup))
+    ends = find_ends(Tradeoff.begin(request))
     limits_at = _limits_at(ends, residuals)
     total = points + len(limits_at)
     report(2, total)
@@ -104,12 +104,12 @@ def epsilon_front(
     known = [ends.still, *scouts.values(), ends.cheapest]
     limits = sorted([*_spaced_limits(ends, known, points), *limits_at])
     report(2 + len(limits) // 3, total)
-    best = _solve_between(ends.curve, known, limits)
+    best = _solve_between(ends.tradeoff, known, limits)
     report(total, total)
     between = [(solution, {RESIDUAL_LIMIT: limit}) for limit, solution in best.items()]
-    front = ends.curve.to_front(
+    front = ends.tradeoff.to_front(
         "epsilon",
-        [*ends.certificates, *ends.curve.certify(between)],
+        [*ends.certificates, *ends.tradeoff.certify(between)],
         points,
         iterations=sum(solution.iterations for solution in scouts.values()),
         settings={"at": ", ".join(map(digits, residuals))} if residuals else {},
@@ -124,8 +124,8 @@ def _scout(ends: Ends, points: int, most: int = 5) -> Best:
     count = max(2, min(most, points - 2))
     shares = (np.arange(1, count + 1) / (count + 1)) ** 1.5
     limits = (ends.still.residual + shares * ends.width).tolist()
-    starts = [ends.still.coefficients, ends.cheapest.coefficients, *ends.curve.starts[1:2]]
-    best, _ = _improve(ends.curve, {}, dict.fromkeys(limits, starts))
+    starts = [ends.still.coefficients, ends.cheapest.coefficients, *ends.tradeoff.starts[1:2]]
+    best, _ = _improve(ends.tradeoff, {}, dict.fromkeys(limits, starts))
     return {limit: solution for limit, solution in best.items() if solution.status.solved}
 
 
@@ -154,7 +154,7 @@ def _limits_at(ends: Ends, residuals: Sequence[float], just_below: float = 1 - 1
 
 
 def _solve_between(
-    curve: Curve,
+    tradeoff: Tradeoff,
     known: Sequence[Solution],
     limits: Sequence[float],
     *,
@@ -168,13 +168,13 @@ def _solve_between(
     for more `rounds`.
     """
     beside = {limit: _starts_beside(known, limit) for limit in limits}
-    best, _ = _improve(curve, {}, beside, warm=True)
-    random = dict.fromkeys(limits[audited // 2 :: audited], curve.starts[1:2])
-    best, changed = _improve(curve, best, random)
+    best, _ = _improve(tradeoff, {}, beside, warm=True)
+    random = dict.fromkeys(limits[audited // 2 :: audited], tradeoff.starts[1:2])
+    best, changed = _improve(tradeoff, best, random)
     changed |= {limit for limit in limits if not best[limit].status.solved}
     for _ in range(rounds):
         starts = _starts_from_neighbours(limits, best, changed)
-        best, changed = _improve(curve, best, starts, warm=True)
+        best, changed = _improve(tradeoff, best, starts, warm=True)
         if not changed:
             break
     return best
@@ -208,17 +208,17 @@ def _starts_beside(known: Sequence[Solution], limit: float) -> list[Array]:
 
 
 def _improve(
-    curve: Curve, best: Best, starts: Mapping[float, Sequence[Array]], warm: bool = False
+    tradeoff: Tradeoff, best: Best, starts: Mapping[float, Sequence[Array]], warm: bool = False
 ) -> tuple[Best, set[float]]:
     """The best at each limit, known or from these starts; and where these are better."""
     limits = [limit for limit, guesses in starts.items() if guesses]
     if not limits:
         return best, set()
-    problems = [curve.problem(limit) for limit in limits]
+    problems = [tradeoff.problem(limit) for limit in limits]
     solutions = best_of_starts(
         problems,
         [starts[limit] for limit in limits],
-        curve.solver,
+        tradeoff.solver,
         warm=warm,
         leave=not warm,
     )
@@ -226,7 +226,7 @@ def _improve(
     changed: set[float] = set()
     for limit, problem, solution in zip(limits, problems, solutions):
         known = best.get(limit)
-        if known is None or better(solution, known, problem.scalarization):
+        if known is None or better(solution, known, problem):
             changed.add(limit)
             improved[limit] = solution
         iterations = solution.iterations + (0 if known is None else known.iterations)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from quietarm.ocp.checks import (
     whole,
 )
 from quietarm.ocp.escapes import csv_table
+from quietarm.ocp.figures import Figure, added_figures
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.front.points import (
     Entries,
@@ -34,6 +35,7 @@ from quietarm.ocp.front.points import (
     knee_of,
     non_dominated,
 )
+from quietarm.ocp.limits import FRONT
 from quietarm.ocp.objectives import (
     RESIDUAL_AND_ENERGY,
     Objective,
@@ -95,7 +97,7 @@ class Front(Answer):
     example: ClassVar[str] = "a front, as Front.load('front.json')"
     kind: ClassVar[str] = "front"
     version: ClassVar[int] = 5
-    earlier: ClassVar[tuple[int, ...]] = (4,)
+    read_by_2_0 = (4,)
 
     task: PointToPoint
     profile: JointProfile
@@ -123,7 +125,7 @@ class Front(Answer):
             raise ValueError("the peaks of its entries are not those of its objectives")
         for i, point in enumerate(self.points, start=1):
             self.profile.checked(point.coefficients)
-            not_negative(f"residual of point {i}", point.residual, "m")
+            not_negative(f"residual of point {i}", point.residual, self.task.plant.tip_unit)
             not_negative(f"energy of point {i}", point.energy, "J")
             if set(point.peaks) != set(quantities):
                 raise ValueError(
@@ -156,7 +158,8 @@ class Front(Answer):
     def columns(self) -> dict[str, NDArray[np.float64]]:
         """``residual_m`` (or ``_rad``), ``energy_J``, ``a_1``, ``a_2``, ... of all points, by name.
 
-        Peaks that are objectives, as ``peak_torque_Nm``, stand after the energy.
+        Peaks that are objectives, as ``peak_torque_Nm``, stand after the energy, and so do figures
+        of one's own.
 
         The last, ``residual_window_s``, is the task's residual window, the same for all.
         """
@@ -167,15 +170,32 @@ class Front(Answer):
             objective.column: column
             for objective, column in zip(objectives, self.objective_values.T)
         }
-        return {**values, **named, **window}
+        more = {
+            figure.column_on(self.task.plant): self.figure_values(figure)
+            for figure in added_figures(FRONT)
+        }
+        return {**values, **more, **named, **window}
+
+    def judged(self, point: FrontPoint) -> Candidate:
+        """Return the motion of a point, for CVODES."""
+        return Candidate.of_profile(self.task, self.profile, point.coefficients)
+
+    def figure_values(self, figure: Figure) -> NDArray[np.float64]:
+        """Return a figure of every point, by CVODES; NaN where a motion does not have it."""
+        motions = map(self.judged, self.points)
+        return np.array([motion.figures.get(figure.name, np.nan) for motion in motions])
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        unit = self.task.plant.tip_unit
+        plant = self.task.plant
+        unit = plant.tip_unit
+        added = added_figures(FRONT)
+        values = [self.figure_values(figure) for figure in added]
         head = (
             f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",
             "energy F2 [J]",
             *(f"{objective.label} [{objective.unit}]" for objective in self._peaks),
+            *(f"{figure.label_on(plant)} [{figure.unit_on(plant) or '-'}]" for figure in added),
             f"shadow price [J/{unit}]",
             "coefficients",
         )
@@ -184,10 +204,11 @@ class Front(Answer):
                 f"{point.residual:.3g}" if point.residual > REST else "0",
                 f"{point.energy:.5g}",
                 *(f"{point.peaks[objective.quantity]:.4g}" for objective in self._peaks),
+                *(f"{column[i]:.{figure.digits}g}" for figure, column in zip(added, values)),
                 f"{point.shadow_prices.get('residual', 0.0):.3g}" if point.shadow_prices else "-",
                 ", ".join(f"{a:.4g}" for a in point.coefficients),
             )
-            for point in self.points
+            for i, point in enumerate(self.points)
         ]
         return to_html(rows, head)
 
@@ -279,6 +300,10 @@ class Front(Answer):
             infeasible=motions.infeasible,
             objectives=names,
         )
+
+    def restated(self, **changes: Any) -> Front:
+        """The same front with other entries of its record."""
+        return replace(self, record=replace(self.record, **changes))
 
     def smallest_residual(self) -> FrontPoint:
         """The point of smallest residual; ValueError when the front is empty."""

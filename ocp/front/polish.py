@@ -9,20 +9,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.curve import (
-    RESIDUAL_LIMIT,
-    Certificate,
-    Curve,
-    Progress,
-    curve_of,
-    no_report,
-)
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from quietarm.ocp.front.surface import Surface
+from quietarm.ocp.front.tradeoff import (
+    RESIDUAL_LIMIT,
+    Certificate,
+    Progress,
+    Tradeoff,
+    no_report,
+)
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
-from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.record import Setting, versions
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import NAME, Solver
@@ -94,16 +91,10 @@ def polish_front(
         When the front has no point.
     """
     began = time.perf_counter()
-    if front.objectives == RESIDUAL_AND_ENERGY:
-        curve = curve_of(front, starts=1, steps=steps, solver=solver)
-        improved = list(_along(curve, front, report))
-        steps_taken = {"steps": curve.transcription.steps}
-    else:
-        front.smallest_residual()  # refuses an empty front
-        setup = Setup(solver, front.record.bound, 1, front.record.seed or 0, steps)
-        surface = Surface.of_front(front, setup)
-        improved = list(_on_surface(surface, front, report))
-        steps_taken = {"steps": surface.transcription.steps}
+    tradeoff = Tradeoff.of_front(front, starts=1, steps=steps, solver=solver)
+    of_energy = front.objectives == RESIDUAL_AND_ENERGY
+    improve_all = _along if of_energy else _within_peaks
+    improved = list(improve_all(tradeoff, front, report))
     certificates = [certificate for of_point in improved for certificate in of_point]
     failures = tuple(
         certificate.point
@@ -119,7 +110,7 @@ def polish_front(
     record = replace(
         front.record,
         method=f"{front.record.method}, polished",
-        settings={**front.record.settings, **_stated(solver), **steps_taken},
+        settings={**front.record.settings, **_stated(solver), "steps": tradeoff.program.steps},
         iterations=front.record.iterations + iterations,
         versions=versions(),
         seconds=front.record.seconds + time.perf_counter() - began,
@@ -136,31 +127,32 @@ def polish_front(
     return Polish(polished, tuple(map(_gain, front.points, improved)))
 
 
-def _along(curve: Curve, front: Front, report: Progress) -> Iterator[list[Certificate]]:
+def _along(tradeoff: Tradeoff, front: Front, report: Progress) -> Iterator[list[Certificate]]:
     """Each point or a better one of no larger residual."""
-    problems = [curve.problem(point.residual) for point in front.points]
+    problems = [tradeoff.problem(point.residual) for point in front.points]
     starts = [np.array(point.coefficients) for point in front.points]
-    solutions = curve.solver.solve(problems, starts)
+    solutions = tradeoff.solver.solve(problems, starts)
     for done, (point, solution) in enumerate(zip(front.points, solutions), start=1):
-        yield _improve(curve, point, solution)
+        yield _improve(tradeoff, point, solution)
         report(done, len(front.points))
 
 
-def _on_surface(surface: Surface, front: Front, report: Progress) -> Iterator[list[Certificate]]:
+def _within_peaks(
+    tradeoff: Tradeoff, front: Front, report: Progress
+) -> Iterator[list[Certificate]]:
     """Each point or a better one of no larger residual and no larger peaks."""
     sizes = [{RESIDUAL: point.residual, **point.peaks} for point in front.points]
-    problems = [surface.problem(of_point) for of_point in sizes]
+    problems = [tradeoff.within(of_point) for of_point in sizes]
     starts = [np.array(point.coefficients) for point in front.points]
-    solutions = surface.setup.solver.solve(problems, starts)
+    solutions = tradeoff.solver.solve(problems, starts)
     rows = zip(front.points, problems, solutions)
     for done, (point, problem, solution) in enumerate(rows, start=1):
         outcome = solution.status.text
         if solution.status.solved:
-            limits = problem.scalarization.limits
-            (outcome,) = surface.certify([solution], [problem], limits)
-        if isinstance(outcome, FrontPoint):
-            better = outcome.energy < point.energy
-            yield [Certificate(outcome if better else point, solution.iterations)]
+            (outcome,) = tradeoff.certify_within([solution], [problem], problem.limits)
+        if isinstance(outcome, Certificate) and isinstance(outcome.point, FrontPoint):
+            better = outcome.point.energy < point.energy
+            yield [Certificate(outcome.point if better else point, solution.iterations)]
         else:
             failed = FailedPoint({RESIDUAL_LIMIT: point.residual}, str(outcome))
             yield [Certificate(point, 0), Certificate(failed, solution.iterations)]
@@ -172,10 +164,10 @@ def _stated(solver: Solver) -> dict[str, Setting]:
     return {name.replace(NAME, "polish", 1): value for name, value in solver.stated.items()}
 
 
-def _improve(curve: Curve, point: FrontPoint, solution: Solution) -> list[Certificate]:
+def _improve(tradeoff: Tradeoff, point: FrontPoint, solution: Solution) -> list[Certificate]:
     """The point or a better one; after the former the reason, if there is one."""
     place = {RESIDUAL_LIMIT: point.residual}
-    (certificate,) = curve.certify([(solution, place)], point.residual)
+    (certificate,) = tradeoff.certify([(solution, place)], point.residual)
     if isinstance(certificate.point, FailedPoint):
         return [Certificate(point, 0), certificate]
     if certificate.point.energy < point.energy:

@@ -16,36 +16,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import product
 from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Progress
 from quietarm.ocp.front.ends import find_ends
-from quietarm.ocp.front.front import Front, reference_corner
-from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated, point_of
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit
-from quietarm.ocp.objectives import peak_quantities, with_peaks_measured
+from quietarm.ocp.front.front import Front
+from quietarm.ocp.front.points import FailedPoint, FrontPoint
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Progress, Tradeoff
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
-from quietarm.ocp.planning.certify import Certified, Tolerances, certify
-from quietarm.ocp.planning.setup import Setup
-from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.record import Setting, digits
 from quietarm.ocp.solvers.problem import (
-    LEAST_ENERGY,
-    NonlinearProgram,
-    Scalarization,
+    Program,
     Solution,
-    Transcription,
-    first_steps,
     still_of,
 )
-from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 Cell = tuple[int, ...]
@@ -53,90 +43,6 @@ Cell = tuple[int, ...]
 _ROOM = 1e-4
 """Share by which the tightest limit exceeds the least value that was found: at that value itself
 nothing is left to minimise."""
-
-
-@dataclass(frozen=True)
-class Surface:
-    """A task whose residual and peaks are limited.
-
-    Attributes
-    ----------
-    task : PointToPoint
-        The move.
-    objectives : tuple of str
-        Names of the objectives.
-    transcription : Transcription
-        The task on its steps, with the peaks measured.
-    setup : Setup
-        How it is solved.
-    """
-
-    task: PointToPoint
-    objectives: tuple[str, ...]
-    transcription: Transcription
-    setup: Setup
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """What is limited: the residual, and the quantities of the peaks."""
-        return RESIDUAL, *peak_quantities(self.objectives)
-
-    @cached_property
-    def starts(self) -> list[Array]:
-        """Coefficients to start from."""
-        return self.setup.start_coefficients(self.transcription.profile)
-
-    def problem(
-        self, sizes: Mapping[str, float], minimise: Mapping[str, float] = LEAST_ENERGY
-    ) -> NonlinearProgram:
-        """The problem within limits of these sizes, and those of the task."""
-        limits = {limit.name: limit for limit in self.task.limits}
-        for name in self.axes[1:]:
-            size = min(sizes.get(name, inf), limits[name].size if name in limits else inf)
-            if size < inf:
-                limits[name] = self.transcription.limits[name].widened_to(size)
-        residual = Limit.of_residual(sizes.get(RESIDUAL, inf), self.task.plant.tip_unit)
-        scalarization = Scalarization((residual, *limits.values()), self.setup.bound, minimise)
-        return NonlinearProgram(self.transcription, scalarization)
-
-    def solve(
-        self, problems: Sequence[NonlinearProgram], starts: Sequence[Sequence[Array]]
-    ) -> list[Solution]:
-        """The best solution of each problem from its starts."""
-        return best_of_starts(problems, starts, self.setup.solver)
-
-    @classmethod
-    def of_front(cls, front: Front, setup: Setup) -> Surface:
-        """The surface of a front that is there already."""
-        measured = with_peaks_measured(front.task, peak_quantities(front.objectives))
-        transcription = Transcription.of(measured, front.profile, setup.steps)
-        return cls(front.task, front.objectives, transcription, setup)
-
-    def certify(
-        self,
-        solutions: Sequence[Solution],
-        problems: Sequence[NonlinearProgram],
-        limits: Sequence[Limit] | None = None,
-    ) -> list[FrontPoint | SolverFailedError]:
-        """Solutions as points by CVODES, within these limits or those of the task alone."""
-        tip_unit = self.task.plant.tip_unit
-        outcomes = certify(
-            problems,
-            solutions,
-            self.setup.solver,
-            Tolerances(energy=1e-4, most_steps=2 * self.transcription.steps),
-            limits or (Limit.of_residual(inf, tip_unit), *self.task.limits),
-        )
-        return [self._point_of(outcome) for outcome in outcomes]
-
-    def _point_of(self, outcome: Certified | SolverFailedError) -> FrontPoint | SolverFailedError:
-        if isinstance(outcome, SolverFailedError):
-            return outcome
-        profile = self.transcription.profile
-        coefficients = profile.checked(outcome.solution.coefficients)
-        motion = Candidate.of_profile(self.task, profile, coefficients)
-        prices = outcome.solution.shadow_prices
-        return replace(point_of(motion, self.objectives), shadow_prices=prices)
 
 
 @dataclass
@@ -204,9 +110,7 @@ class Grid:
 
 
 def surface_front(
-    task: PointToPoint,
-    profile: JointProfile,
-    setup: Setup,
+    request: Request,
     objectives: tuple[str, ...],
     points: int,
     residuals: Sequence[float],
@@ -216,13 +120,13 @@ def surface_front(
 
     Errors are those of `epsilon_front`.
     """
-    surface, still, cheapest = _begin(task, profile, setup, objectives)
+    tradeoff, still, cheapest = _begin(request, objectives)
     payoffs = {RESIDUAL: still} | {
-        name: _least_peak(surface, name, [still, cheapest]) for name in surface.axes[1:]
+        name: _least_peak(tradeoff, name, [still, cheapest]) for name in tradeoff.axes[1:]
     }
-    dimensions = len(surface.axes)
+    dimensions = len(tradeoff.axes)
     count = max(3, _count(points / 4, dimensions))
-    grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
+    grid = _solved_grid(tradeoff, payoffs, cheapest, count, residuals)
     # a coarse grid tells which share of the cells has a motion of its own, and so how fine the next
     # has to be
     finer_grids = 2
@@ -234,10 +138,17 @@ def surface_front(
         share = max(grid.distinct, 1) / int(np.prod(grid.shape))
         count = max(count + 1, _count(points / share, dimensions))
         iterations = grid.iterations
-        grid = _solved_grid(surface, payoffs, cheapest, count, residuals)
+        grid = _solved_grid(tradeoff, payoffs, cheapest, count, residuals)
         grid.iterations += iterations
     report(points, points)
-    return _front_of(surface, grid, cheapest, points, residuals)
+    return _front_of(tradeoff, grid, cheapest, points, residuals)
+
+
+def _solve(
+    tradeoff: Tradeoff, problems: Sequence[Program], starts: Sequence[Sequence[Array]]
+) -> list[Solution]:
+    """The best solution of each program from its starts."""
+    return best_of_starts(problems, starts, tradeoff.solver)
 
 
 def _count(cells: float, dimensions: int) -> int:
@@ -246,43 +157,40 @@ def _count(cells: float, dimensions: int) -> int:
 
 
 def _solved_grid(
-    surface: Surface,
+    tradeoff: Tradeoff,
     payoffs: Mapping[str, Solution],
     cheapest: Solution,
     count: int,
     residuals: Sequence[float],
 ) -> Grid:
     """A grid of so many limits of each axis, every cell solved or left out."""
-    grid = _grid_of(surface, payoffs, cheapest, count, residuals)
+    grid = _grid_of(tradeoff, payoffs, cheapest, count, residuals)
     for wave in grid.waves():
-        _solve_wave(surface, grid, wave)
-    _improve_from_tighter(surface, grid)
+        _solve_wave(tradeoff, grid, wave)
+    _improve_from_tighter(tradeoff, grid)
     return grid
 
 
-def _begin(
-    task: PointToPoint, profile: JointProfile, setup: Setup, objectives: tuple[str, ...]
-) -> tuple[Surface, Solution, Solution]:
-    """The surface on its steps, its motion of least residual, and the cheapest."""
-    measured = with_peaks_measured(task, peak_quantities(objectives))
-    ends = find_ends(Curve.begin(task, profile, setup))
-    steps = setup.steps or max(ends.curve.transcription.steps, first_steps(measured, profile))
-    transcription = Transcription(measured, profile, steps)
-    surface = Surface(task, objectives, transcription, setup)
-    at_rest = ends.still.residual <= still_of(task)
+def _begin(request: Request, objectives: tuple[str, ...]) -> tuple[Tradeoff, Solution, Solution]:
+    """The trade-off on its steps, its motion of least residual, and the cheapest."""
+    ends = find_ends(Tradeoff.begin(request))
+    tradeoff = Tradeoff.measured(request, objectives)
+    if request.steps is None and tradeoff.program.steps < ends.tradeoff.program.steps:
+        tradeoff = Tradeoff.measured(request, objectives, ends.tradeoff.program.steps)
+    at_rest = ends.still.residual <= still_of(request.task)
     least = 0.0 if at_rest else ends.still.residual * (1 + _ROOM)
-    problems = [surface.problem({RESIDUAL: least}), surface.problem({})]
+    problems = [tradeoff.within({RESIDUAL: least}), tradeoff.within({})]
     starts = [[end.coefficients] for end in (ends.still, ends.cheapest)]
-    still, cheapest = surface.solve(problems, starts)
+    still, cheapest = _solve(tradeoff, problems, starts)
     for solution in (still, cheapest):
         if not solution.status.solved:
             raise SolverFailedError(f"an end of the front was not solved: {solution.status.text}")
     iterations = ends.still.iterations + ends.cheapest.iterations
-    return surface, still, replace(cheapest, iterations=cheapest.iterations + iterations)
+    return tradeoff, still, replace(cheapest, iterations=cheapest.iterations + iterations)
 
 
 def _grid_of(
-    surface: Surface,
+    tradeoff: Tradeoff,
     payoffs: Mapping[str, Solution],
     cheapest: Solution,
     count: int,
@@ -296,10 +204,10 @@ def _grid_of(
     table = [*payoffs.values(), cheapest]
     shares = np.linspace(0.0, 1.0, count)
     limits = dict[str, tuple[float, ...]]()
-    for name in surface.axes:
+    for name in tradeoff.axes:
         values = [solution.peaks[name] for solution in table]
         least = payoffs[name].peaks[name]
-        at_rest = name == RESIDUAL and least <= still_of(surface.task)
+        at_rest = name == RESIDUAL and least <= still_of(tradeoff.task)
         tightest = 0.0 if at_rest else least * (1 + _ROOM)
         along = shares**1.5 if name == RESIDUAL else shares
         sizes = tightest + along * max(max(values) - tightest, 0.0)
@@ -311,21 +219,21 @@ def _grid_of(
     return Grid(limits, payoffs, iterations=iterations)
 
 
-def _least_peak(surface: Surface, name: str, ends: Sequence[Solution]) -> Solution:
+def _least_peak(tradeoff: Tradeoff, name: str, ends: Sequence[Solution]) -> Solution:
     """The cheapest motion of the least peak of a quantity."""
-    guesses = [*(end.coefficients for end in ends), *surface.starts]
-    (least,) = surface.solve([surface.problem({}, {name: 1.0})], [guesses])
+    guesses = [*(end.coefficients for end in ends), *tradeoff.starts]
+    (least,) = _solve(tradeoff, [tradeoff.within({}, {name: 1.0})], [guesses])
     if not least.status.solved:
         raise SolverFailedError(f"the least peak {name} was not found: {least.status.text}")
     within = {name: least.peaks[name] * (1 + _ROOM)}
-    (solution,) = surface.solve(
-        [surface.problem(within)], [[least.coefficients, *guesses[: len(ends)]]]
+    (solution,) = _solve(
+        tradeoff, [tradeoff.within(within)], [[least.coefficients, *guesses[: len(ends)]]]
     )
     iterations = least.iterations + solution.iterations
     return replace(solution if solution.status.solved else least, iterations=iterations)
 
 
-def _solve_wave(surface: Surface, grid: Grid, wave: Sequence[Cell], audited: int = 4) -> None:
+def _solve_wave(tradeoff: Tradeoff, grid: Grid, wave: Sequence[Cell], audited: int = 4) -> None:
     """Solve cells whose wider neighbours are known; one in so many from a random start as well."""
     open_cells = list[Cell]()
     for cell in wave:
@@ -344,7 +252,7 @@ def _solve_wave(surface: Surface, grid: Grid, wave: Sequence[Cell], audited: int
             grid.left_out += 1
         else:
             open_cells.append(cell)
-    problems = [surface.problem(grid.sizes(cell)) for cell in open_cells]
+    problems = [tradeoff.within(grid.sizes(cell)) for cell in open_cells]
     starts = list[list[Array]]()
     for place, cell in enumerate(open_cells):
         known = [grid.best[near] for near in grid.beside(cell, 1) if near in grid.best]
@@ -353,9 +261,9 @@ def _solve_wave(surface: Surface, grid: Grid, wave: Sequence[Cell], audited: int
             solution.coefficients for solution in [*known, *(tight or grid.payoffs.values())]
         ]
         if place % audited == 0:
-            guesses += surface.starts[1:2]
+            guesses += tradeoff.starts[1:2]
         starts.append(guesses)
-    for cell, solution in zip(open_cells, surface.solve(problems, starts) if problems else []):
+    for cell, solution in zip(open_cells, _solve(tradeoff, problems, starts) if problems else []):
         _note(grid, cell, solution)
 
 
@@ -370,7 +278,7 @@ def _note(grid: Grid, cell: Cell, solution: Solution) -> None:
         grid.failed[cell] = solution.status.text
 
 
-def _improve_from_tighter(surface: Surface, grid: Grid, rounds: int = 3) -> None:
+def _improve_from_tighter(tradeoff: Tradeoff, grid: Grid, rounds: int = 3) -> None:
     """Solve cells again that cost more than a tighter neighbour, or have none although it has one.
 
     What is within tighter limits is within wider ones.
@@ -387,12 +295,12 @@ def _improve_from_tighter(surface: Surface, grid: Grid, rounds: int = 3) -> None
                     starts.setdefault(cell, []).append(solution.coefficients)
         if not starts:
             return
-        problems = [surface.problem(grid.sizes(cell)) for cell in starts]
-        solutions = surface.solve(problems, list(starts.values()))
+        problems = [tradeoff.within(grid.sizes(cell)) for cell in starts]
+        solutions = _solve(tradeoff, problems, list(starts.values()))
         for cell, problem, solution in zip(starts, problems, solutions):
             known = grid.best.get(cell)
             grid.iterations += solution.iterations
-            improves = known is None or better(solution, known, problem.scalarization)
+            improves = known is None or better(solution, known, problem)
             if solution.status.solved and improves:
                 grid.best[cell] = solution
                 grid.infeasible.discard(cell)
@@ -400,44 +308,37 @@ def _improve_from_tighter(surface: Surface, grid: Grid, rounds: int = 3) -> None
 
 
 def _front_of(
-    surface: Surface, grid: Grid, cheapest: Solution, points: int, residuals: Sequence[float]
+    tradeoff: Tradeoff, grid: Grid, cheapest: Solution, points: int, residuals: Sequence[float]
 ) -> Front:
     """The front of all cells and payoffs, whose record says what became of the grid."""
     cells = {id(solution): cell for cell, solution in grid.best.items()}
     solutions = {id(solution): solution for solution in grid.best.values()}
     distinct = list(solutions.values())
-    problems = [surface.problem(grid.sizes(cells[id(solution)])) for solution in distinct]
+    problems = [tradeoff.within(grid.sizes(cells[id(solution)])) for solution in distinct]
     for solution in (*grid.payoffs.values(), cheapest):
         distinct.append(solution)
-        problems.append(surface.problem({name: solution.peaks[name] for name in surface.axes}))
-    certified = surface.certify(distinct, problems)
-    failures = [FailedPoint(_place(grid, cell), why) for cell, why in grid.failed.items()]
-    for solution, point in zip(distinct, certified):
-        if not isinstance(point, FrontPoint):
+        problems.append(tradeoff.within({name: solution.peaks[name] for name in tradeoff.axes}))
+    certified = tradeoff.certify_within(distinct, problems)
+    failed = [FailedPoint(_place(grid, cell), why) for cell, why in grid.failed.items()]
+    found = list[FrontPoint | FailedPoint](failed)
+    for solution, outcome in zip(distinct, certified):
+        if isinstance(outcome, Certificate):
+            found.append(outcome.point)
+        else:
             place = {RESIDUAL_LIMIT: solution.residual}
-            place |= {QUANTITIES[name].limit: solution.peaks[name] for name in surface.axes[1:]}
-            failures.append(FailedPoint(place, str(point)))
+            place |= {QUANTITIES[name].limit: solution.peaks[name] for name in tradeoff.axes[1:]}
+            found.append(FailedPoint(place, str(outcome)))
     settings: dict[str, Setting] = {
-        "points": points,
-        "steps": surface.transcription.steps,
         "grid": " x ".join(map(str, grid.shape)),
         "infeasible_cells": len(grid.infeasible),
         "cells_left_out": grid.left_out,
     }
     if residuals:
         settings["at"] = ", ".join(map(digits, residuals))
-    task = surface.task
-    return Front(
-        task=task,
-        profile=surface.transcription.profile,
-        points=non_dominated(
-            [point for point in certified if isinstance(point, FrontPoint)], surface.objectives
-        ),
-        record=surface.setup.record("epsilon", grid.iterations, 0.0, **settings),
-        reference=reference_corner(task, surface.objectives),
-        failed=len(failures),
-        failures=tuple(failures),
-        objectives=surface.objectives,
+    # the grid's iterations are those of all its cells
+    certificates = [Certificate(point, 0) for point in found]
+    return tradeoff.to_front(
+        "epsilon", certificates, points, iterations=grid.iterations, settings=settings
     )
 
 

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import not_negative, quoted, takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT, Curve, Place, Progress, no_report
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Place, Progress, Tradeoff, no_report
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import digits, number_of_points
 from quietarm.ocp.solvers.problem import Solution
@@ -79,8 +79,8 @@ def weighted_front(
     profile = choose_profile(task) if profile is None else profile
     points = number_of_points(points)
     chosen = [] if weights is None else _pairs(weights)
-    setup = Setup(solver, bound, starts, seed, steps)
-    ends = find_ends(Curve.begin(task, profile, setup))
+    request = Request(task, profile, solver, bound, starts, seed, steps)
+    ends = find_ends(Tradeoff.begin(request))
     minima: list[Minimum] = []
     gaps: list[Gap] = []
     if chosen and not ends.are_one:
@@ -88,9 +88,9 @@ def weighted_front(
     elif not ends.are_one:
         minima, gaps = _along_chords(ends, points, report)
     pairs = [f"{digits(residual)}:{digits(energy)}" for residual, energy in chosen]
-    front = ends.curve.to_front(
+    front = ends.tradeoff.to_front(
         "weighted",
-        [*ends.certificates, *ends.curve.certify(minima)],
+        [*ends.certificates, *ends.tradeoff.certify(minima)],
         points,
         settings={"weights": ", ".join(pairs)} if pairs else {},
     )
@@ -119,8 +119,8 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence[Array]) -> Minimum:
     """The best minimum of one weighted sum, weights of the scaled objectives."""
-    solver = ends.curve.solver
-    problem = ends.curve.problem(
+    solver = ends.tradeoff.solver
+    problem = ends.tradeoff.problem(
         minimise={RESIDUAL: of_residual / ends.width, ENERGY: of_energy / ends.height}
     )
     # far starts lead past a dearer minimum, near ones keep to the minimum beside them
@@ -129,7 +129,7 @@ def _minimise(ends: Ends, of_residual: float, of_energy: float, starts: Sequence
     best = min(
         from_far,
         from_near,
-        key=lambda solution: minimum_of(solution, problem.scalarization),
+        key=lambda solution: minimum_of(solution, problem),
     )
     best = replace(best, iterations=from_far.iterations + from_near.iterations)
     if best.status.solved:  # if it is not certified, its place is known

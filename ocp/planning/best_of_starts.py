@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit, Ranged
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.planning.certify import OF_A_PLAN, by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
 from quietarm.ocp.solvers.least_excess import least_excess
-from quietarm.ocp.solvers.problem import STILL, NonlinearProgram, Scalarization, Solution
+from quietarm.ocp.solvers.problem import STILL, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
@@ -26,24 +26,24 @@ _ROOM = 1.001
 """A least value is quoted with this margin, so that a user who asks for it gets a plan."""
 
 
-def minimum_of(solution: Solution, scalarization: Scalarization) -> float:
+def minimum_of(solution: Solution, problem: Program) -> float:
     """What was minimised; infinite where nothing was solved."""
     values = {**solution.peaks, ENERGY: solution.energy}
-    minimum = sum(weight * values[name] for name, weight in scalarization.minimise.items())
+    minimum = sum(weight * values[name] for name, weight in problem.minimise.items())
     return minimum if solution.status.solved else np.inf
 
 
-def better(solution: Solution, known: Solution, scalarization: Scalarization) -> bool:
+def better(solution: Solution, known: Solution, problem: Program) -> bool:
     """Whether a solution is lower than a known one by more than the solver's tolerance."""
-    minimum = minimum_of(solution, scalarization)
-    known_minimum = minimum_of(known, scalarization)
+    minimum = minimum_of(solution, problem)
+    known_minimum = minimum_of(known, problem)
     if known_minimum == np.inf:
         return minimum < np.inf
     return minimum < known_minimum - SAME * abs(known_minimum)
 
 
 def best_of_starts(
-    problems: Sequence[NonlinearProgram],
+    problems: Sequence[Program],
     starts: Sequence[Sequence[Array]],
     solver: Solver,
     *,
@@ -67,18 +67,18 @@ def best_of_starts(
     best: list[Solution] = []
     for problem, guesses in zip(problems, starts):
         of_problem = list(islice(remaining, len(guesses)))
-        best.append(_lowest(of_problem, problem.scalarization))
+        best.append(_lowest(of_problem, problem))
     return best
 
 
-def _lowest(solutions: Sequence[Solution], scalarization: Scalarization) -> Solution:
+def _lowest(solutions: Sequence[Solution], problem: Program) -> Solution:
     """The best of some solutions, with the iterations of all."""
-    lowest = min(solutions, key=lambda solution: minimum_of(solution, scalarization))
+    lowest = min(solutions, key=lambda solution: minimum_of(solution, problem))
     return replace(lowest, iterations=sum(solution.iterations for solution in solutions))
 
 
 def solve_from_starts(
-    problem: NonlinearProgram,
+    problem: Program,
     starts: Sequence[Array],
     solver: Solver,
     *,
@@ -101,7 +101,7 @@ def solve_from_starts(
         yield solver, starts
         if quick:
             return
-        if problem.scalarization.limits:
+        if problem.limits:
             least.update(least_peaks_of(problem, starts[:2], solver))
             yield solver, [solution.coefficients for solution in least.values()]
         substitute = stand_in(solver) if thorough and has_stand_in else None
@@ -120,26 +120,26 @@ def solve_from_starts(
         raise InfeasibleTaskError(f"no start was solved: {tried[0].reason}")
     if not solved:
         raise explain(problem, tried, least, solver)
-    solved.sort(key=lambda solution: minimum_of(solution, problem.scalarization))
+    solved.sort(key=lambda solution: minimum_of(solution, problem))
     iterations = sum(solution.iterations for solution in tried)
     return replace(solved[0], iterations=iterations), solved
 
 
 def _briefly(
-    solver: Solver, problem: NonlinearProgram, tried: Sequence[Solution], iterations: int = 120
+    solver: Solver, problem: Program, tried: Sequence[Solution], iterations: int = 120
 ) -> Solver:
     """The solver with fewer iterations where all that was tried ended beyond a limit on the way."""
     infeasible = all(solution.status is SolveStatus.INFEASIBLE for solution in tried)
-    if not (infeasible and problem.transcription.task.limits):
+    if not (infeasible and problem.task.limits):
         return solver
     return replace(solver, iterations=min(iterations, solver.iterations))
 
 
-def is_beyond(problem: NonlinearProgram, start: Array, share: float = 0.05) -> bool:
+def is_beyond(problem: Program, start: Array, share: float = 0.05) -> bool:
     """Whether linear programs say that the limits have to be wider by more than a share."""
-    if not any(limit.name != RESIDUAL for limit in problem.scalarization.limits):
+    if not any(limit.name != RESIDUAL for limit in problem.limits):
         return False
-    if problem.scalarization.peak is not None:
+    if problem.peak is not None:
         return False
     excess = least_excess(problem, start)
     return excess.holds and excess.share > share
@@ -177,20 +177,15 @@ def least_peaks(
 
 
 def least_peaks_of(
-    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver
+    problem: Program, starts: Sequence[Array], solver: Solver
 ) -> dict[str, Solution]:
     """The same of a problem, from several starts."""
 
     def solve_least(limits: Sequence[Limit], name: str) -> list[Solution]:
-        relaxed = _with_scalarization(problem, limits=tuple(limits), minimise={name: 1.0})
+        relaxed = problem.asking(limits=tuple(limits), minimise={name: 1.0})
         return solver.solve([relaxed] * len(starts), starts)
 
-    return least_peaks(problem.scalarization.limits, solve_least)
-
-
-def _with_scalarization(problem: NonlinearProgram, **changes: object) -> NonlinearProgram:
-    """The same task on the same steps, with other limits or another objective."""
-    return problem._replace(scalarization=problem.scalarization._replace(**changes))
+    return least_peaks(problem.limits, solve_least)
 
 
 def true_peaks(
@@ -213,31 +208,29 @@ def true_peaks(
 
 
 def explain(
-    problem: NonlinearProgram,
+    problem: Program,
     tried: Sequence[Solution],
     least: Mapping[str, Solution],
     solver: Solver,
 ) -> SolverFailedError:
     """The error for a problem that no start solved; other arguments as for `unmet`."""
-    profile = problem.transcription.profile
-    bound = problem.scalarization.bound
+    profile = problem.profile
+    bound = problem.bound
     sought = Sought(
         f"motion of {profile.amount}",
         f"more {profile.term}s or a longer duration",
         box="" if bound is None else f", coefficients within +-{bound:g}",
     )
     confirmed = _confirm(problem, least, solver)
-    return unmet(sought, problem.scalarization.limits, tried, confirmed)
+    return unmet(sought, problem.limits, tried, confirmed)
 
 
-def _confirm(
-    problem: NonlinearProgram, least: Mapping[str, Solution], solver: Solver
-) -> dict[str, float]:
+def _confirm(problem: Program, least: Mapping[str, Solution], solver: Solver) -> dict[str, float]:
     """Those least peaks with which there is a plan, as CVODES finds them."""
-    limits = problem.scalarization.limits
+    limits = problem.limits
 
     def resimulated(solution: Solution) -> Ranged:
-        return by_cvodes(problem.transcription, solution.coefficients)
+        return by_cvodes(problem, solution.coefficients)
 
     peaks = true_peaks(limits, least, resimulated)
     return {
@@ -252,10 +245,10 @@ def _confirm(
     }
 
 
-def offers_for(problem: NonlinearProgram, starts: Sequence[Array], solver: Solver) -> str:
+def offers_for(problem: Program, starts: Sequence[Array], solver: Solver) -> str:
     """Limits with which there is a plan, each with all else unchanged; nothing where none is."""
     least = least_peaks_of(problem, starts[:2], solver)
-    return _offers(problem.scalarization.limits, _confirm(problem, least, solver))
+    return _offers(problem.limits, _confirm(problem, least, solver))
 
 
 def _offers(limits: Sequence[Limit], least: Mapping[str, float]) -> str:
@@ -268,17 +261,15 @@ def _offers(limits: Sequence[Limit], least: Mapping[str, float]) -> str:
     return f"feasible with all else unchanged: {' or '.join(remedies)}" if remedies else ""
 
 
-def _widened(problem: NonlinearProgram, limit: Limit, peak: float) -> NonlinearProgram:
+def _widened(problem: Program, limit: Limit, peak: float) -> Program:
     """The problem with a limit that is as wide as would be offered."""
     offered = limit.widened_to(peak * _ROOM)
-    limits = problem.scalarization.limits
+    limits = problem.limits
     replaced = tuple(offered if known is limit else known for known in limits)
-    return _with_scalarization(problem, limits=replaced)
+    return problem.asking(limits=replaced)
 
 
-def has_a_plan(
-    problem: NonlinearProgram, start: Array, solver: Solver, most_refined: int = 2
-) -> bool:
+def has_a_plan(problem: Program, start: Array, solver: Solver, most_refined: int = 2) -> bool:
     """Whether a plan is found from one start, and CVODES confirms it.
 
     It may take so many times the steps: where a remedy needs finer ones, it is at its own edge, and
@@ -287,7 +278,7 @@ def has_a_plan(
     (solution,) = solver.solve([problem], [start])
     if not solution.status.solved:
         return False
-    steps = min(most_refined * problem.transcription.steps, OF_A_PLAN.most_steps)
+    steps = min(most_refined * problem.steps, OF_A_PLAN.most_steps)
     try:
         certify_one(problem, solution, solver, replace(OF_A_PLAN, most_steps=steps))
     except SolverFailedError:

@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.limits import QUANTITIES, Limit, Quantity, Ranged
+from quietarm.ocp.figures import ENERGY, Figures
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
     STILL_SHARE,
-    NonlinearProgram,
+    Program,
     Solution,
-    Transcription,
     evaluate,
+    programs_of,
     still_of,
-    transcribe,
 )
 from quietarm.ocp.solvers.solver import Solver
 
@@ -54,40 +54,27 @@ OF_A_PLAN = Tolerances()
 56 plans tried (6e-6)."""
 
 
-@dataclass(frozen=True)
-class FinerFigures(Ranged):
-    """Energy [J], residual [m] and state on arrival by finer steps; whether CVODES confirmed them.
-
-    The state has shape (1, 2 * modes).
-    """
-
-    energy: float
-    residual: float
-    arrival: Array
-    by_cvodes: bool = False
-
-    def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """As of `Ranged`, of the residual alone."""
-        del quantity
-        return -self.residual, self.residual
-
-
-Judgement = Candidate | FinerFigures
-"""What another integrator says of a motion."""
+Judgement = Candidate | Figures
+"""What another integrator says of a motion: CVODES; or by finer steps energy, residual and
+`arrival`, the state of shape (1, 2 * modes)."""
 
 
 @dataclass(frozen=True)
 class Certified:
-    """A solution with what another integrator says, and the problem, tightened, that it solves."""
+    """A solution with what another integrator says, and the problem, tightened, that it solves.
+
+    Whether that is CVODES' word, or CVODES confirmed it, `by_cvodes` tells.
+    """
 
     solution: Solution
     checked: Judgement
-    problem: NonlinearProgram
+    problem: Program
+    by_cvodes: bool
 
     @property
     def steps(self) -> int:
         """The solver's steps."""
-        return self.problem.transcription.steps
+        return self.problem.steps
 
     @property
     def energy(self) -> float:
@@ -103,7 +90,7 @@ Outcome = Certified | SolverFailedError
 
 
 def certify(
-    problems: Sequence[NonlinearProgram],
+    problems: Sequence[Program],
     solutions: Sequence[Solution],
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
@@ -132,13 +119,13 @@ def certify(
     return [outcomes[i] for i in range(len(problems))]
 
 
-def _is_without_limits(problem: NonlinearProgram) -> bool:
-    task = problem.transcription.task
+def _is_without_limits(problem: Program) -> bool:
+    task = problem.task
     return not task.limits and task.uncertainty is None
 
 
 def certify_one(
-    problem: NonlinearProgram,
+    problem: Program,
     solution: Solution,
     solver: Solver,
     tolerances: Tolerances = OF_A_PLAN,
@@ -156,7 +143,7 @@ class _Row:
 
     def __init__(
         self,
-        problem: NonlinearProgram,
+        problem: Program,
         solution: Solution,
         tolerances: Tolerances,
         limits: Sequence[Limit] | None,
@@ -164,18 +151,13 @@ class _Row:
         self.problem = problem
         self.solution = solution
         self.tolerances = tolerances
-        self.scalarization = problem.scalarization
-        self.tightened = problem.scalarization.limits
-        self.limits = problem.scalarization.limits if limits is None else limits
-        still_share = STILL_SHARE * problem.transcription.plain_residual
-        self.still = max(still_of(problem.transcription.task), still_share)
+        self.asked = problem
+        self.tightened = problem.limits
+        self.limits = problem.limits if limits is None else limits
+        still_share = STILL_SHARE * problem.plain_residual
+        self.still = max(still_of(problem.task), still_share)
         self.tried: list[Certified] = []
         self.failure: SolverFailedError | None = None
-
-    @property
-    def transcription(self) -> Transcription:
-        """The task on the steps that it takes now."""
-        return self.problem.transcription
 
     @property
     def judgement(self) -> Judgement:
@@ -184,10 +166,11 @@ class _Row:
 
     def note(self, judgement: Judgement) -> None:
         """Note what another integrator says of the last solution."""
-        self.tried.append(Certified(self.solution, judgement, self.problem))
+        by_cvodes = isinstance(judgement, Candidate)
+        self.tried.append(Certified(self.solution, judgement, self.problem, by_cvodes))
         self.tightened = tighten(self.tightened, judgement, self.limits)
 
-    def go_on_from(self, solution: Solution, problem: NonlinearProgram) -> None:
+    def go_on_from(self, solution: Solution, problem: Program) -> None:
         """Take another solution, whose iterations count as well."""
         iterations = self.solution.iterations + solution.iterations
         self.solution = replace(solution, iterations=iterations)
@@ -197,7 +180,7 @@ class _Row:
     def is_rough(self) -> bool:
         """Whether the solver's steps are too few for the energy."""
         energy = self.judgement.energy
-        share = max(self.tolerances.energy, self.transcription.profile.energy_agreement)
+        share = max(self.tolerances.energy, self.problem.profile.energy_agreement)
         return abs(self.solution.energy - energy) > share * energy
 
     @property
@@ -206,7 +189,7 @@ class _Row:
 
         They may differ by a share of rest, or of the limit.
         """
-        tolerated = max(0.3 * self.still, 5e-3 * self.scalarization.residual_limit)
+        tolerated = max(0.3 * self.still, 5e-3 * self.asked.residual_limit)
         difference = abs(self.solution.residual - self.judgement.residual)
         return difference > tolerated or bool(self.judgement.exceeded(self.limits))
 
@@ -255,14 +238,11 @@ def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
     """Solve rows with tighter limits, and with what the steps miss of their states on arrival."""
     solved: list[_Row] = []
     for alike in _alike(rows):
-        by_steps = evaluate([row.transcription for row in alike], _table(alike))
+        by_steps = evaluate([row.problem for row in alike], _table(alike))
         problems = []
         for row, motion in zip(alike, by_steps):
-            corrected = row.scalarization._replace(
-                limits=row.tightened,
-                offset=row.judgement.arrival - motion.arrival,
-            )
-            problems.append(NonlinearProgram(row.transcription, corrected))
+            missed = row.judgement.arrival - motion.arrival
+            problems.append(row.problem.asking(limits=row.tightened, offset=missed))
         solved += _solve_again(alike, problems, solver)
     return solved
 
@@ -270,21 +250,21 @@ def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
 def _refine(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
     """Solve rows on twice the steps, if they may have as many."""
     solved: list[_Row] = []
-    refinable = [row for row in rows if 2 * row.transcription.steps <= row.tolerances.most_steps]
+    refinable = [row for row in rows if 2 * row.problem.steps <= row.tolerances.most_steps]
     for alike in _alike(refinable):
-        coarse = alike[0].transcription
-        tasks = [row.transcription.task for row in alike]
-        finer = transcribe(tasks, coarse.profile, 2 * coarse.steps)
+        coarse = alike[0].problem
+        tasks = [row.problem.task for row in alike]
+        finer = programs_of(tasks, coarse.profile, 2 * coarse.steps)
         problems = []
-        for row, transcription in zip(alike, finer):
-            row.tightened = row.scalarization.limits
-            problems.append(NonlinearProgram(transcription, row.scalarization))
+        for row, on_finer_steps in zip(alike, finer):
+            row.tightened = row.asked.limits
+            problems.append(row.asked.on_steps_of(on_finer_steps))
         solved += _solve_again(alike, problems, solver)
     return solved
 
 
 def _solve_again(
-    rows: Sequence[_Row], problems: Sequence[NonlinearProgram], solver: Solver
+    rows: Sequence[_Row], problems: Sequence[Program], solver: Solver
 ) -> Iterable[_Row]:
     """The rows that are solved from their solutions."""
     starts = [row.solution.coefficients for row in rows]
@@ -297,7 +277,7 @@ def _solve_again(
 
 def _judge_by_cvodes(rows: Sequence[_Row]) -> None:
     for row in rows:
-        candidate = by_cvodes(row.transcription, row.solution.coefficients)
+        candidate = by_cvodes(row.problem, row.solution.coefficients)
         try:
             _ = candidate.energy
             _ = candidate.residual  # in all scenarios
@@ -309,17 +289,16 @@ def _judge_by_cvodes(rows: Sequence[_Row]) -> None:
 
 def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
     for alike in _alike(rows):
-        transcriptions = [row.transcription for row in alike]
-        evaluation = _evaluate_finely(transcriptions, _table(alike))
+        evaluation = _evaluate_finely([row.problem for row in alike], _table(alike))
         for i, row in enumerate(alike):
-            task = row.transcription.task
-            check_motion(row.transcription.profile, row.solution.coefficients, *task.move)
-            figures = FinerFigures(
-                float(evaluation.energy[i, 0]),
-                float(evaluation.residual[i, 0]),
-                evaluation.arrival[i],
-            )
-            row.note(figures)
+            task = row.problem.task
+            check_motion(row.problem.profile, row.solution.coefficients, *task.move)
+            figures = {
+                ENERGY: float(evaluation.energy[i, 0]),
+                RESIDUAL: float(evaluation.residual[i, 0]),
+                "arrival": evaluation.arrival[i],
+            }
+            row.note(Figures(figures))
 
 
 def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[Outcome]:
@@ -333,13 +312,12 @@ def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[O
         if isinstance(outcome, SolverFailedError):
             continue
         figures = outcome.checked
-        assert isinstance(figures, FinerFigures)
-        exact = by_cvodes(outcome.problem.transcription, outcome.solution.coefficients)
+        exact = by_cvodes(outcome.problem, outcome.solution.coefficients)
         energy_differs = abs(exact.energy - figures.energy) > agreement * exact.energy
         tolerated = agreement * exact.residual + still_of(exact.task)
         if energy_differs or abs(exact.residual - figures.residual) > tolerated:
             return []
-        confirmed[i] = replace(outcome, checked=replace(figures, by_cvodes=True))
+        confirmed[i] = replace(outcome, by_cvodes=True)
     return confirmed
 
 
@@ -347,7 +325,7 @@ def _alike(rows: Sequence[_Row]) -> list[list[_Row]]:
     """The rows of the same steps."""
 
     def steps(row: _Row) -> int:
-        return row.transcription.steps
+        return row.problem.steps
 
     return [list(alike) for _, alike in groupby(sorted(rows, key=steps), steps)]
 
@@ -356,29 +334,29 @@ def _table(rows: Sequence[_Row]) -> Array:
     return np.array([row.solution.coefficients for row in rows])
 
 
-def finer_peaks(transcriptions: Sequence[Transcription], coefficients: Array) -> dict[str, Array]:
+def finer_peaks(problems: Sequence[Program], coefficients: Array) -> dict[str, Array]:
     """Peaks of every quantity of one motion of each task, at the nodes of finer steps."""
-    evaluation = _evaluate_finely(transcriptions, coefficients, tuple(QUANTITIES.values()))
+    evaluation = _evaluate_finely(problems, coefficients, tuple(QUANTITIES.values()))
     return {name: evaluation.largest(name)[:, 0] for name in QUANTITIES}
 
 
 def _evaluate_finely(
-    transcriptions: Sequence[Transcription],
+    problems: Sequence[Program],
     coefficients: Array,
     quantities: Sequence[Quantity] = (),
     finer: int = 3,
 ) -> Evaluation:
     """A motion of each task, on its nominal plant, by so many times the solver's steps."""
-    first = transcriptions[0]
+    first = problems[0]
     steps = max(default_steps(first.task), finer * first.steps)
-    tasks = [transcription.task.certain for transcription in transcriptions]
+    tasks = [problem.task.certain for problem in problems]
     evaluator = Evaluator(tasks, first.profile, steps, quantities=quantities)
     return evaluator(coefficients)
 
 
-def by_cvodes(transcription: Transcription, coefficients: Array) -> Candidate:
+def by_cvodes(problem: Program, coefficients: Array) -> Candidate:
     """The motion of coefficients, for CVODES."""
-    return Candidate.of_profile(transcription.task, transcription.profile, coefficients)
+    return Candidate.of_profile(problem.task, problem.profile, coefficients)
 
 
 def tighten(limits: Sequence[Limit], motion: Ranged, to_keep: Sequence[Limit]) -> tuple[Limit, ...]:

@@ -24,7 +24,7 @@ from quietarm.ocp.planning.best_of_starts import best_of_starts, has_a_plan
 from quietarm.ocp.planning.least_time import fitting_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
-from quietarm.ocp.planning.request import PlanRequest
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -56,7 +56,7 @@ def more_terms(task: PointToPoint) -> CycloidPolynomial:
     return CycloidPolynomial(_OF_ONE_MODE if task.plant.modes == 1 else _OF_SEVERAL_MODES)
 
 
-def plan_on_chosen_profile(request: PlanRequest) -> Plan:
+def plan_on_chosen_profile(request: Request) -> Plan:
     """The plan along the profile that a task takes, or along a richer one where it finds none.
 
     InfeasibleTaskError, where no profile does, has the duration that would do.
@@ -69,10 +69,10 @@ def plan_on_chosen_profile(request: PlanRequest) -> Plan:
         raise _with_a_duration(error, request) from None
 
 
-def _plan_on_first_that_will_do(request: PlanRequest) -> Plan:
+def _plan_on_first_that_will_do(request: Request) -> Plan:
     """The plan along the profile of a request, or on a spline, or of more terms."""
     plan = _plan_within_limits(request) if request.task.limits else _plan_without_limits(request)
-    if plan is not None and (plan.residual_limit or 0.0) <= request.residual_limit.size:
+    if plan is not None and (plan.residual_limit or 0.0) <= request.residual_limit:
         return plan
     # no motion was found, or the default residual limit was out of reach
     on_spline = _plan_on_spline(request)
@@ -83,11 +83,11 @@ def _plan_on_first_that_will_do(request: PlanRequest) -> Plan:
     if plan is not None:
         return plan
     # where the residual limit adapts, the stand-in was tried with these terms before
-    last = replace(request, has_stand_in=not request.residual_limit.adapts)
+    last = replace(request, has_stand_in=not request.adapts)
     return _state_terms(plan_along(last.along(more_terms(request.task))))
 
 
-def _plan_without_limits(request: PlanRequest) -> Plan | None:
+def _plan_without_limits(request: Request) -> Plan | None:
     """The plan of six terms, or of more where these find no motion."""
     with suppress(SolverFailedError):
         return plan_along(request)
@@ -95,7 +95,7 @@ def _plan_without_limits(request: PlanRequest) -> Plan | None:
     return None if plan is None else _state_terms(plan)
 
 
-def _plan_within_limits(request: PlanRequest) -> Plan | None:
+def _plan_within_limits(request: Request) -> Plan | None:
     """The plan of the number of terms for limits; its record states what six would cost.
 
     One start does, the plain cycloid; another is what six terms give, where it leads nowhere, or
@@ -114,7 +114,7 @@ def _plan_within_limits(request: PlanRequest) -> Plan | None:
             best = from_six
     if best is None:
         return None
-    settings: dict[str, Setting] = {"starts": request.setup.starts}
+    settings: dict[str, Setting] = {"starts": request.starts}
     if six.status.solved and not uncertain:
         settings[OF_SIX] = six.energy
     return _state_terms(best, settings).restated(
@@ -123,34 +123,33 @@ def _plan_within_limits(request: PlanRequest) -> Plan | None:
     )
 
 
-def _solve_with_six(request: PlanRequest) -> Solution:
+def _solve_with_six(request: Request) -> Solution:
     """What six terms give for the nominal plant, by the solver's own steps."""
-    residual_limit = request.residual_limit
-    size = 0.0 if residual_limit.adapts else residual_limit.size
+    size = 0.0 if request.adapts else request.residual_limit
     nominal = request.on(request.task.certain).within(size)
     with_six = replace(nominal, profile=SIX)
-    (six,) = best_of_starts([with_six.problem()], [with_six.starts], request.setup.solver)
+    (six,) = best_of_starts([with_six.problem()], [with_six.guesses], request.solver)
     return six
 
 
-def _plan_on_spline(request: PlanRequest) -> Plan | None:
+def _plan_on_spline(request: Request) -> Plan | None:
     """The plan on a spline that keeps the limits; None where none was found."""
-    if not request.task.limits or request.setup.bound is not None:
+    if not request.task.limits or request.bound is not None:
         return None
-    fitted = fitting_spline(request.task, request.residual_limit.size, None)
+    fitted = fitting_spline(request.task, request.residual_limit, None)
     if fitted is None:
         return None
     return _try_along(request, *fitted)
 
 
 def _try_along(
-    request: PlanRequest, profile: JointProfile, guess: ArrayLike | None = None
+    request: Request, profile: JointProfile, guess: ArrayLike | None = None
 ) -> Plan | None:
     """The plan along another profile from one start; None where no motion was found."""
     return _try(request.along(profile, guess))
 
 
-def _try(request: PlanRequest) -> Plan | None:
+def _try(request: Request) -> Plan | None:
     """The plan that is asked for; None where no motion was found, and not why."""
     try:
         return plan_along(replace(request, quick=True))
@@ -170,16 +169,16 @@ def _state_terms(plan: Plan, settings: Mapping[str, Setting] | None = None) -> P
     return plan.restated(settings=stated)
 
 
-def _with_a_duration(error: InfeasibleTaskError, request: PlanRequest) -> InfeasibleTaskError:
+def _with_a_duration(error: InfeasibleTaskError, request: Request) -> InfeasibleTaskError:
     """The error with the duration that would do, where a longer one does."""
     motion = f"motion of {more_terms(request.task).amount}"
     what = error.what.replace(motion, f"{motion} or on a spline", 1)
-    if not request.task.limits or request.setup.bound is not None:
+    if not request.task.limits or request.bound is not None:
         return InfeasibleTaskError(error.what)
     return InfeasibleTaskError(what, _remedy(request))
 
 
-def _remedy(request: PlanRequest) -> str:
+def _remedy(request: Request) -> str:
     """The duration that will do, or may, in words; nothing where none was found at little cost."""
     task = request.task
     most_steps = 400
@@ -191,14 +190,14 @@ def _remedy(request: PlanRequest) -> str:
             return may_do
     except ValueError:  # nothing limits the joint, or no task takes so long
         return ""
-    size = request.residual_limit.size
+    size = request.residual_limit
     try:
         least = least_time(task, size, None, 1e-2, rounds=0, most_steps=2 * most_steps)
     except ValueError:
         return may_do
     duration = _rounded_up(least.duration)
     lasting = request.on(replace(task, duration=float(duration))).along(least.profile)
-    if has_a_plan(lasting.problem(), least.coefficients, request.setup.solver):
+    if has_a_plan(lasting.problem(), least.coefficients, request.solver):
         return f"a duration of {duration} s will do"
     return may_do
 

@@ -17,9 +17,7 @@ from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
-from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.residual_limit import ResidualLimit
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.simulation.full_dynamics import FullFigures
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -107,9 +105,9 @@ def _again(plan: Plan, figures: FullFigures, solver: Solver) -> Plan:
     amplitudes, rates = np.split(-missed, 2)
     final = ModalState(tuple(amplitudes), tuple(rates))
     corrected = replace(task, final=final)
-    setup = Setup(solver, bound=plan.record.bound, starts=1, steps=plan.steps)
-    limit = ResidualLimit.of(corrected, plan.residual_limit or None)
-    request = PlanRequest(corrected, plan.profile, setup, limit, quick=True)
+    request = Request(
+        corrected, plan.profile, solver, plan.record.bound, starts=1, steps=plan.steps, quick=True
+    ).stating(plan.residual_limit or None)
     try:
         again = plan_along(request.from_guess(plan.coefficients))
     except SolverFailedError as error:

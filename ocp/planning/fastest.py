@@ -17,18 +17,17 @@ from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.best_of_starts import is_beyond
+from quietarm.ocp.planning.choose_profile import SIX
 from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
-from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.residual_limit import ResidualLimit
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.rigid_motion import (
     assumed_bounds,
     largest_deflection,
     rigid_duration,
     rigid_motion,
 )
-from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -108,19 +107,18 @@ def fastest_move(
         When no duration is feasible.
     """
     positive("duration tolerance", duration_tolerance)
-    setup = Setup(solver, bound, 1, seed, steps)
+    request = Request(task, SIX if profile is None else profile, solver, bound, 1, seed, steps)
     if not task.limits:
         names = ", ".join(QUANTITIES)
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
     if task.uncertainty is not None and residual_limit is None:
         residual_limit = fastest_residual_limit(task)
     began = time.perf_counter()
-    limit = ResidualLimit.of(task, residual_limit)
+    request = request.stating(residual_limit)
     if profile is None:
-        fastest = _fastest_on_spline(task, setup, limit, duration_tolerance)
+        fastest = _fastest_on_spline(request, duration_tolerance)
     else:
         profile.refuse_no_choice()
-        request = PlanRequest(task, profile, setup, limit)
         fastest = _fastest_along(request, duration_tolerance)
     plan = fastest.plan.restated(seconds=time.perf_counter() - began)
     return Fastest(plan, fastest.failed)
@@ -144,28 +142,27 @@ def fastest_residual_limit(task: PointToPoint) -> float:
     return limit
 
 
-def _fastest_on_spline(
-    task: PointToPoint, setup: Setup, residual_limit: ResidualLimit, tolerance: float
-) -> Fastest:
+def _fastest_on_spline(request: Request, tolerance: float) -> Fastest:
     """The plan of least energy in the least time on a spline, or in hardly more."""
+    task = request.task
     try:
-        least = least_time(task, residual_limit.size, setup.bound, tolerance / 2)
+        least = least_time(task, request.residual_limit, request.bound, tolerance / 2)
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
-    steps = least.steps if setup.steps is None else setup.steps
-    from_least = replace(setup, guess=tuple(least.coefficients.tolist()), steps=steps)
-    request = PlanRequest(least.task, least.profile, from_least, residual_limit, quick=True)
+    steps = least.steps if request.steps is None else request.steps
+    along = request.along(least.profile, least.coefficients)
+    along = replace(along, steps=steps, quick=True)
     for margin in _margins(task):
         duration = (1 + margin) * least.duration
         try:
-            plan = plan_along(request.on(replace(least.task, duration=duration)))
+            plan = plan_along(along.on(replace(least.task, duration=duration)))
         except SolverFailedError as error:
             failed[duration] = str(error)
             continue
         settings = dict(plan.record.settings)
         settings.pop("guess", None)
-        settings["steps"] = setup.steps
+        settings["steps"] = request.steps
         return Fastest(plan.restated(settings=settings), _longest_first(failed))
     longest, why = max(failed.items())
     raise InfeasibleTaskError(f"no duration up to {longest:.3g} s will do: {why}")
@@ -192,7 +189,7 @@ def _longest_first(failed: Mapping[float, str]) -> tuple[tuple[float, str], ...]
     return tuple(sorted(failed.items(), reverse=True))
 
 
-def _fastest_along(request: PlanRequest, tolerance: float) -> Fastest:
+def _fastest_along(request: Request, tolerance: float) -> Fastest:
     """The plan in the shortest duration along a profile."""
     tried = _Tried(request)
     _narrow(tried, tolerance)
@@ -235,7 +232,7 @@ class _Tried:
     Where a stand-in succeeds, the solver alone says little, and all that follow are tried so.
     """
 
-    def __init__(self, request: PlanRequest) -> None:
+    def __init__(self, request: Request) -> None:
         self.request = request
         self.best: Plan | None = None
         self.failed: dict[float, str] = {}
@@ -247,7 +244,7 @@ class _Tried:
         task = replace(self.request.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
         request = self.request.on(task)
-        request = replace(request, setup=replace(request.setup, thorough=self._thorough))
+        request = replace(request, thorough=self._thorough)
         along = request.along(self.request.profile, guess)
         if self._thorough:
             self._explained.add(duration)

@@ -29,8 +29,7 @@ from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.solvers.least_excess import Excess, least_excess
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
-    NonlinearProgram,
-    Transcription,
+    Program,
     first_steps,
 )
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
@@ -236,8 +235,7 @@ class _Durations:
         self._steps = max(self._steps, first_steps(task, self._profile))
         if self._steps > self._most_steps:
             raise ValueError(f"a move of {duration:g} s takes {self._steps} steps")
-        transcription = Transcription.of(task, self._profile, self._steps)
-        problem = self._problem(transcription)
+        problem = self._problem(Program.of(task, self._profile, self._steps))
         excess = least_excess(problem, self._start)
         if not excess.holds:
             excess = least_excess(problem, self._profile.plain)
@@ -245,15 +243,13 @@ class _Durations:
             self._start = excess.coefficients
         return excess
 
-    def _problem(self, transcription: Transcription) -> NonlinearProgram:
+    def _problem(self, program: Program) -> Program:
         """Within narrower limits of what is limited on the way."""
-        problem = NonlinearProgram.of(transcription, self._residual_limit, self._bound)
+        problem = program.within(self._residual_limit, self._bound)
         limits = [
-            limit.tightened(1 + self._margins.get(limit.name, 0.0))
-            for limit in problem.scalarization.limits
+            limit.tightened(1 + self._margins.get(limit.name, 0.0)) for limit in problem.limits
         ]
-        narrowed = problem.scalarization._replace(limits=tuple(limits))
-        return problem._replace(scalarization=narrowed)
+        return problem.asking(limits=tuple(limits))
 
     def with_worst_cases(self, least: LeastTime) -> PointToPoint | None:
         """The task with what passes the residual's limit between its scenarios; None if nothing."""

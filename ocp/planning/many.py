@@ -10,20 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
+from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
-from quietarm.ocp.planning.certify import Certified, FinerFigures, certify, finer_peaks
+from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
-from quietarm.ocp.planning.residual_limit import ResidualLimit
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import stand_in
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, first_steps, transcribe
+from quietarm.ocp.solvers.problem import Program, Solution, first_steps, programs_of
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
@@ -106,19 +106,16 @@ def plan_moves(
     """
     if profile is None:
         profile = choose_profile(tasks[0]) if tasks else SIX
-    setup = Setup(solver, bound, starts, seed)
     _check(tasks, profile)
-    limit = ResidualLimit.of(tasks[0], residual_limit).size
-    transcriptions = transcribe(tasks, profile, _steps(tasks, profile))
-    problems = [
-        NonlinearProgram.of(transcription, limit, setup.bound) for transcription in transcriptions
-    ]
-    guesses = setup.start_coefficients(profile)
+    request = Request(tasks[0], profile, solver, bound, starts, seed).stating(residual_limit)
+    on_steps = programs_of(tasks, profile, _steps(tasks, profile))
+    problems = [program.within(request.residual_limit, request.bound) for program in on_steps]
+    guesses = request.guesses
     plain = guesses[:1]
     random = guesses[1:]
     attempts: list[tuple[Solver, Sequence[Array]]] = []
     if neighbours:
-        solutions = _from_neighbours(problems, guesses[0], setup)
+        solutions = _from_neighbours(problems, request)
         attempts += [(solver, plain), (solver, random)]
     else:
         solutions = best_of_starts(problems, [guesses] * len(problems), solver)
@@ -128,23 +125,20 @@ def plan_moves(
     hopeless = _refuse_the_unsolved(problems, solutions)
     for attempting, starts_of_all in attempts:
         _solve_the_unsolved(problems, solutions, starts_of_all, attempting, hopeless)
-    moves = _Table(problems, solutions)
+    moves = _MovesTable(problems, solutions)
     moves.certify(solver, guesses)
     return moves.to_moves()
 
 
-def _refuse_the_unsolved(
-    problems: Sequence[NonlinearProgram], solutions: list[Solution]
-) -> set[int]:
+def _refuse_the_unsolved(problems: Sequence[Program], solutions: list[Solution]) -> set[int]:
     """Say of moves without a solution that they cannot be, where that needs no solver."""
     refused = set[int]()
     for i, solution in enumerate(solutions):
         if solution.status.solved:
             continue
-        task = problems[i].transcription.task
-        limit = ResidualLimit(problems[i].scalarization.residual_limit)
+        task = problems[i].task
         try:
-            refuse_too_short(task, arrives_at_rest(task, limit))
+            refuse_too_short(task, arrives_at_rest(task, problems[i].residual_limit))
         except InfeasibleTaskError as error:
             refused.add(i)
             infeasible = SolveStatus.INFEASIBLE
@@ -156,7 +150,7 @@ def _refuse_the_unsolved(
 
 
 def _solve_the_unsolved(
-    problems: Sequence[NonlinearProgram],
+    problems: Sequence[Program],
     solutions: list[Solution],
     starts: Sequence[Array],
     solver: Solver,
@@ -177,9 +171,8 @@ def _solve_the_unsolved(
 
 
 def _from_neighbours(
-    problems: Sequence[NonlinearProgram],
-    start: Array,
-    setup: Setup,
+    problems: Sequence[Program],
+    request: Request,
     share: int = 8,
     same: float = 1e-9,
 ) -> list[Solution]:
@@ -187,15 +180,16 @@ def _from_neighbours(
 
     Moves that differ by less than `same` of the spread of all are one.
     """
-    solver = setup.solver
+    solver = request.solver
+    start = request.guesses[0]
     count = len(problems)
-    shuffled = np.random.default_rng(setup.seed).permutation(count)
+    shuffled = np.random.default_rng(request.seed).permutation(count)
     pilots = shuffled[: math.ceil(count / share)].tolist()
     solutions = solver.solve([problems[i] for i in pilots], [start] * len(pilots))
     solved = [k for k, solution in enumerate(solutions) if solution.status.solved]
     if not solved:
         return solver.solve(problems, [start] * count)
-    moves = np.array([problem.transcription.task.row for problem in problems])
+    moves = np.array([problem.task.row for problem in problems])
     moves /= np.ptp(moves, axis=0) + same
     known = moves[[pilots[k] for k in solved]]
     nearest = [int(np.argmin(np.abs(known - move).sum(axis=1))) for move in moves]
@@ -211,14 +205,14 @@ def _steps(tasks: Sequence[PointToPoint], profile: JointProfile) -> int:
     return first_steps(longest, profile)
 
 
-class _Table:
+class _MovesTable:
     """The columns of `Moves`, empty until a solution is certified."""
 
-    def __init__(self, problems: Sequence[NonlinearProgram], solutions: Sequence[Solution]) -> None:
+    def __init__(self, problems: Sequence[Program], solutions: Sequence[Solution]) -> None:
         count = len(problems)
         self._problems = problems
         self._solutions = list(solutions)
-        self._profile = problems[0].transcription.profile
+        self._profile = problems[0].profile
         self._coefficients = np.full((count, self._profile.size), np.nan)
         self._energy = np.full(count, np.nan)
         self._residual = np.full(count, np.nan)
@@ -261,11 +255,10 @@ class _Table:
         self._coefficients[i] = certified.solution.coefficients
         self._energy[i] = judgement.energy
         self._residual[i] = judgement.residual
-        if isinstance(judgement, FinerFigures):
-            self._by_cvodes[i] = judgement.by_cvodes
+        self._by_cvodes[i] = certified.by_cvodes
+        if not isinstance(judgement, Candidate):
             self._by_finer_steps.append(i)
             return
-        self._by_cvodes[i] = True
         for name, values in self._peaks.items():
             values[i] = judgement.motion.peak(name)
 
@@ -274,15 +267,15 @@ class _Table:
         rows = self._by_finer_steps
         if not rows:
             return
-        transcriptions = [self._problems[i].transcription for i in rows]
-        for name, values in finer_peaks(transcriptions, self._coefficients[rows]).items():
+        problems = [self._problems[i] for i in rows]
+        for name, values in finer_peaks(problems, self._coefficients[rows]).items():
             self._peaks[name][rows] = values
 
     def to_moves(self) -> Moves:
         """The plans."""
         solutions = self._solutions
         return Moves(
-            tasks=tuple(problem.transcription.task for problem in self._problems),
+            tasks=tuple(problem.task for problem in self._problems),
             profile=self._profile,
             coefficients=self._coefficients,
             energy=self._energy,
@@ -299,7 +292,7 @@ class _Table:
 
 
 def _certify_from_another_start(
-    problem: NonlinearProgram, starts: Sequence[Array], solver: Solver
+    problem: Program, starts: Sequence[Array], solver: Solver
 ) -> Certified | None:
     """The first solution that CVODES confirms, of a move whose own it does not; None if none."""
     for start in starts:

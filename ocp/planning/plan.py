@@ -14,14 +14,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
-from quietarm.models.joint_motion import joint_label
+from quietarm.models.dimensions import ACCELERATION, ANGLE, EFFORT, SPEED, TORQUE, WAY, Words
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.escapes import csv_table
+from quietarm.ocp.figures import ENERGY, figures_in
 from quietarm.ocp.files import write_whole
-from quietarm.ocp.joint_words import joint_headings, peak_words
-from quietarm.ocp.limits import Limit
+from quietarm.ocp.joint_words import figure_words, joint_headings
+from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -70,7 +71,7 @@ class Plan(MotionAnswer):
     example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
     version: ClassVar[int] = 5
-    earlier: ClassVar[tuple[int, ...]] = (4,)
+    read_by_2_0 = (4,)
 
     task: PointToPoint
     profile: JointProfile
@@ -85,10 +86,6 @@ class Plan(MotionAnswer):
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
         object.__setattr__(self, "shadow_prices", prices)
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
-
-    @classmethod
-    def _decided_before(cls, verification: Verification) -> dict[str, Any]:
-        return {"steps": verification.steps}
 
     @classmethod
     @takes(candidate=Candidate)
@@ -196,12 +193,10 @@ class Plan(MotionAnswer):
         if motion.residual > REST * task.smallness:
             residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
-        joint = task.plant.joint
         peaks = {
-            joint_label(f"peak {name}", joint): peak_words(self.candidate, name).replace(
-                "s^2", "s\u00b2"
-            )
-            for name in ("torque", "speed", "acceleration")
+            figure.label_on(task.plant): figure_words(self.candidate, figure, drawn=True)
+            for figure in figures_in(NOTEBOOK)
+            if figure.name not in (RESIDUAL, ENERGY) and figure.name in self.figures
         }
         rows = {
             "plant": task.plant.name,
@@ -244,9 +239,9 @@ class Plan(MotionAnswer):
         sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
         plant = self.task.plant
         tip_names = [f"{name}_{plant.tip_unit}" for name in plant.tip_names]
-        orders = ("angle", "rad"), ("speed", "rad/s"), ("acceleration", "rad/s^2")
+        orders = (ANGLE, WAY), (Words("speed"), SPEED), (Words("acceleration"), ACCELERATION)
         header = ["time_s", *joint_headings(plant, *orders), *tip_names]
-        header += [*joint_headings(plant, ("torque", "N m")), "power_W"]
+        header += [*joint_headings(plant, (TORQUE, EFFORT)), "power_W"]
         sample = sampled.sample
         moving = [value for joint in sample.joints for value in joint[:3]]
         table = np.column_stack(
@@ -292,7 +287,7 @@ def evaluate_coefficients(
         record=Record(method, {} if settings is None else settings),
         steps=default_steps(task),
     )
-    _ = plan.motion, plan.worst  # a motion that fails does so here
+    _ = plan.energy, plan.residual, plan.worst  # a motion that fails does so here
     return plan.restated(seconds=time.perf_counter() - began)
 
 

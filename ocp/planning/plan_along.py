@@ -26,12 +26,12 @@ from quietarm.ocp.planning.best_of_starts import (
 )
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes, certify_one
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.request import PlanRequest
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
 from quietarm.ocp.record import REST
 from quietarm.ocp.robustness import Worst, peaks_between
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution
+from quietarm.ocp.solvers.problem import Program, Solution
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
@@ -50,45 +50,45 @@ _BETWEEN = 2e-4
 Array = NDArray[np.float64]
 
 
-def plan_along(request: PlanRequest) -> Plan:
+def plan_along(request: Request) -> Plan:
     """The plan along the profile of a request, within its residual limit."""
     began = time.perf_counter()
-    plan = _adapt_limit(request) if request.residual_limit.adapts else _keep_limit(request)
+    plan = _adapt_limit(request) if request.adapts else _keep_limit(request)
     return plan.restated(seconds=time.perf_counter() - began)
 
 
-def _keep_limit(request: PlanRequest) -> Plan:
+def _keep_limit(request: Request) -> Plan:
     """The plan within a residual limit that is stated, between the scenarios as well.
 
     SolverFailedError where the worst case exceeds it.
     """
-    plan = _hold(request, request.starts)
+    plan = _hold(request, request.guesses)
     if plan.worst is None or (plan.excess or 0.0) <= OVERRUN:
         return plan
     unit = request.task.plant.tip_unit
     raise SolverFailedError(
         f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
-        f"limit of {request.residual_limit.size:g} {unit}: give a larger residual limit, more "
+        f"limit of {request.residual_limit:g} {unit}: give a larger residual limit, more "
         f"{request.profile.term}s or a smaller uncertainty"
     )
 
 
-def _adapt_limit(request: PlanRequest) -> Plan:
+def _adapt_limit(request: Request) -> Plan:
     """The plan within the default limit, at most the worst case of the nominal plant's plan.
 
     If neither is feasible, the limit is near the least residual over the scenarios; if that does
     not hold between them, it is the worst case of the plan.
     """
     request = replace(request, quick=False)
-    starts = request.starts
+    starts = request.guesses
     nominal, motions = _nominal_plan(request)
     nominal_worst = np.inf
     if nominal is not None and nominal.worst is not None:
         nominal_worst = nominal.worst.residual
         # of many random starts, as networks take them, those stand for the others that led there
-        starts = [*motions, *starts[: max(request.setup.starts, _NOMINAL_STARTS - len(motions))]]
+        starts = [*motions, *starts[: max(request.starts, _NOMINAL_STARTS - len(motions))]]
     most = max(nominal_worst, REST * request.task.smallness)
-    limit = min(request.residual_limit.size, most)
+    limit = min(request.residual_limit, most)
     try:
         plan = _hold(request.within(limit), starts, gives_up=True)
     except InfeasibleTaskError:
@@ -104,7 +104,7 @@ def _adapt_limit(request: PlanRequest) -> Plan:
     return plan.with_entries(residual_limit=plan.worst.residual)
 
 
-def _nominal_plan(request: PlanRequest) -> tuple[Plan | None, list[Array]]:
+def _nominal_plan(request: Request) -> tuple[Plan | None, list[Array]]:
     """The plan at rest of the nominal plant, for the uncertain task; None where there is none.
 
     And the coefficients of some that were solved, itself first.
@@ -112,27 +112,18 @@ def _nominal_plan(request: PlanRequest) -> tuple[Plan | None, list[Array]]:
     nominal = request.on(request.task.certain).within(0.0)
     try:
         refuse_too_short(nominal.task, arrives_at_rest(nominal.task, nominal.residual_limit))
-        solved = _solve(nominal, request.starts)
-        plan = _certified_plan(nominal, solved)
+        plan, motions = plan_from_starts(nominal, request.guesses)
     except SolverFailedError:  # only other motions may keep the limits
         return None, []
-    motions = [np.array(plan.coefficients), *solved.motions[1:_MOST_MOTIONS]]
+    motions = [np.array(plan.coefficients), *motions[1:_MOST_MOTIONS]]
     return plan.on(request.task), motions
 
 
-def _least_residual(request: PlanRequest, starts: list[Array]) -> float | None:
+def _least_residual(request: Request, starts: list[Array]) -> float | None:
     """The least residual over the scenarios [m]; None where no start was solved."""
     problem = request.within(np.inf).problem(minimise={RESIDUAL: 1.0})
-    (stillest,) = best_of_starts([problem], [starts], request.setup.solver)
+    (stillest,) = best_of_starts([problem], [starts], request.solver)
     return stillest.residual if stillest.status.solved else None
-
-
-class _Attempt(NamedTuple):
-    """A plan; all motions that were solved, cheapest first; peaks between the scenarios."""
-
-    plan: Plan
-    solved: list[Array]
-    peaks: list[Worst]
 
 
 class _Solved(NamedTuple):
@@ -141,7 +132,7 @@ class _Solved(NamedTuple):
     The cheapest come first; of those that cost the same there is one.
     """
 
-    problem: NonlinearProgram
+    problem: Program
     best: Solution
     motions: list[Array]
     seconds: float
@@ -149,12 +140,11 @@ class _Solved(NamedTuple):
     @property
     def peaks(self) -> list[Worst]:
         """Peaks of the best motion's residual between the scenarios, before it is certified."""
-        motion = by_cvodes(self.problem.transcription, self.best.coefficients)
-        return peaks_between(motion, roughly=True)
+        return peaks_between(by_cvodes(self.problem, self.best.coefficients), roughly=True)
 
 
 def _hold(
-    request: PlanRequest, starts: list[Array], most_starts: int = 4, gives_up: bool = False
+    request: Request, starts: list[Array], most_starts: int = 4, gives_up: bool = False
 ) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
@@ -163,17 +153,16 @@ def _hold(
     divided by the remaining excess; where that does not settle it, they become scenarios as well.
     A search that gives up looks for nothing else where no start leads to a limit far out of reach.
     """
-    limit = request.residual_limit.size
+    limit = request.residual_limit
     request, solved = _solve_with_the_worst(request, starts, most_starts, gives_up)
-    attempt = _attempt(request, solved)
-    plan = attempt.plan
+    plan = _certified_plan(request, solved)
+    between = list(plan.peaks)
     tightened = limit
     rounds = 0
     tightenings = 0
-    while attempt.peaks:
-        plan = attempt.plan
-        excess = attempt.peaks[0].residual / limit - 1
-        above = [peak for peak in attempt.peaks if peak.residual > limit]
+    while between:
+        excess = between[0].residual / limit - 1
+        above = [peak for peak in between if peak.residual > limit]
         scenarios = new_scenarios(request.task, above)
         can_add = bool(scenarios) and rounds < _ROUNDS
         can_tighten = excess > 0 and tightenings < _TIGHTENINGS
@@ -187,18 +176,18 @@ def _hold(
             known = request.task.scenarios[1:]
             request = request.on(request.task.with_samples([*known, *scenarios]))
             following = request
-            starts += attempt.solved[:most_starts]
+            starts += solved.motions[:most_starts]
         elif can_tighten:
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
-            setup = replace(request.setup, steps=plan.steps)
-            following = replace(request, setup=setup, quick=True).within(tightened)
+            following = replace(request, steps=plan.steps, quick=True).within(tightened)
         else:
             break
         try:
             again = _solve_near(following, starts) if tightenings else _solve(following, starts)
-            attempt = _attempt(following, again)
-            plan = attempt.plan
+            another = _certified_plan(following, again)
+            between = list(another.peaks)
+            plan, solved = another, again
         except SolverFailedError:
             if not tightenings:
                 raise
@@ -207,14 +196,14 @@ def _hold(
 
 
 def _solve_with_the_worst(
-    request: PlanRequest, starts: list[Array], most_starts: int, gives_up: bool
-) -> tuple[PlanRequest, _Solved]:
+    request: Request, starts: list[Array], most_starts: int, gives_up: bool
+) -> tuple[Request, _Solved]:
     """The request with the worst cases of its solution as scenarios, and that solution.
 
     They are looked for before anything is certified, which takes several solves. A worst case that
     is near one of those replaces it. A limit that is hardly exceeded is tightened by as much.
     """
-    limit = request.residual_limit.size
+    limit = request.residual_limit
     solved = _solve(request, starts, gives_up)
     for _ in range(_ROUNDS if request.task.ranges and limit > 0 else 0):
         peaks = solved.peaks
@@ -241,13 +230,7 @@ def _solve_with_the_worst(
     return request, solved
 
 
-def _attempt(request: PlanRequest, solved: _Solved) -> _Attempt:
-    """The certified plan, and the peaks of its residual between the scenarios, if it has any."""
-    plan = _certified_plan(request, solved)
-    return _Attempt(plan, solved.motions, list(plan.peaks))
-
-
-def _solve(request: PlanRequest, starts: Sequence[Array], gives_up: bool = False) -> _Solved:
+def _solve(request: Request, starts: Sequence[Array], gives_up: bool = False) -> _Solved:
     """What starts lead to, with the errors of `solve_from_starts`."""
     if gives_up and not request.quick:
         try:
@@ -256,17 +239,16 @@ def _solve(request: PlanRequest, starts: Sequence[Array], gives_up: bool = False
             if is_beyond(request.problem(), starts[0]):
                 raise
     began = time.perf_counter()
-    setup = request.setup
     problem = request.problem()
     best, solved = solve_from_starts(
         problem,
         starts,
-        setup.solver,
+        request.solver,
         quick=request.quick,
-        thorough=setup.thorough,
+        thorough=request.thorough,
         has_stand_in=request.has_stand_in,
     )
-    minima = [minimum_of(solution, problem.scalarization) for solution in solved]
+    minima = [minimum_of(solution, problem) for solution in solved]
     cheaper = [-np.inf, *((1 + SAME) * minimum for minimum in minima)]
     distinct = [
         solution.coefficients
@@ -276,17 +258,17 @@ def _solve(request: PlanRequest, starts: Sequence[Array], gives_up: bool = False
     return _Solved(problem, best, distinct, time.perf_counter() - began)
 
 
-def _solve_near(request: PlanRequest, starts: Sequence[Array]) -> _Solved:
+def _solve_near(request: Request, starts: Sequence[Array]) -> _Solved:
     """The same from a start that is nearly a solution, or from anew where that leads nowhere."""
     began = time.perf_counter()
     problem = request.problem()
-    (best,) = best_of_starts([problem], [starts[:1]], request.setup.solver, warm=True)
+    (best,) = best_of_starts([problem], [starts[:1]], request.solver, warm=True)
     if not best.status.solved:
         return _solve(request, starts)
     return _Solved(problem, best, [best.coefficients], time.perf_counter() - began)
 
 
-def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
+def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
     """The plan from starts, whose limit holds in all scenarios.
 
     And the coefficients of all that were solved, cheapest first. Errors are those of
@@ -296,18 +278,19 @@ def plan_from_starts(request: PlanRequest, starts: Sequence[Array]) -> tuple[Pla
     return _certified_plan(request, solved), solved.motions
 
 
-def _certified_plan(request: PlanRequest, solved: _Solved) -> Plan:
+def _certified_plan(request: Request, solved: _Solved) -> Plan:
     """The plan of a solution, judged by CVODES."""
     began = time.perf_counter() - solved.seconds
-    setup = request.setup
-    certified = certify_one(solved.problem, solved.best, setup.solver)
+    certified = certify_one(solved.problem, solved.best, request.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution
     return Plan.of_candidate(
         certified.checked,
         status=solution.status,
-        record=setup.record(setup.solver.name, solution.iterations, time.perf_counter() - began),
+        record=request.record(
+            request.solver.name, solution.iterations, time.perf_counter() - began
+        ),
         steps=certified.steps,
-        residual_limit=request.residual_limit.size,
+        residual_limit=request.residual_limit,
         shadow_prices=solution.shadow_prices,
     )

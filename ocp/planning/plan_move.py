@@ -15,9 +15,7 @@ from quietarm.ocp.planning.best_of_starts import offers_for
 from quietarm.ocp.planning.choose_profile import choose_profile, plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
-from quietarm.ocp.planning.request import PlanRequest
-from quietarm.ocp.planning.residual_limit import ResidualLimit
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -93,7 +91,6 @@ def plan_move(
         When no motion of this profile is feasible, with what would be; when no start ended at an
         optimum for another reason.
     """
-    setup = Setup(solver, bound, starts, seed, steps)
     takes_its_profile = profile is None and guess is None
     if profile is None:
         profile = (
@@ -101,17 +98,17 @@ def plan_move(
             if guess is None
             else CycloidPolynomial.of_size(count_of("coefficients", guess))
         )
+    request = Request(task, profile, solver, bound, starts, seed, steps)
     if profile.size == 0:
         return only_motion(task, profile, residual_limit)
-    limit = ResidualLimit.of(task, residual_limit)
-    request = PlanRequest(task, profile, setup, limit)
+    request = request.stating(residual_limit)
     if guess is not None:
         request = request.from_guess(guess)
     if takes_its_profile:
         return plan_on_chosen_profile(request)
     try:
-        refuse_too_short(task, arrives_at_rest(task, limit))
+        refuse_too_short(task, arrives_at_rest(task, request.residual_limit))
     except InfeasibleTaskError as error:
-        offers = offers_for(request.problem(), request.starts, solver)
+        offers = offers_for(request.problem(), request.guesses, solver)
         raise InfeasibleTaskError(error.what, offers) from None
     return plan_along(request)

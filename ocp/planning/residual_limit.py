@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import not_negative
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -11,37 +9,28 @@ from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.task import PointToPoint
 
 
-class ResidualLimit(NamedTuple):
-    """The largest residual of a plan [m], and whether it may be lowered or raised.
+def checked_residual_limit(task: PointToPoint, stated: float | None) -> float:
+    """The limit [m] that is stated, or the default: rest, or `quiet_residual` of an uncertain task.
 
-    Of an uncertain task the default is only where the search for a limit begins.
+    Of an uncertain task the default is only where the search for a limit begins. ValueError where
+    it is negative, or that of an uncertain task is 0.
     """
-
-    size: float
-    adapts: bool = False
-
-    @classmethod
-    def of(cls, task: PointToPoint, stated: float | None) -> ResidualLimit:
-        """The limit that is stated, or the default: rest, or `quiet_residual` of an uncertain task.
-
-        ValueError where it is negative, or that of an uncertain task is 0.
-        """
-        if stated is not None:
-            stated = not_negative("residual limit", stated, "m")
-        if task.uncertainty is None:
-            return cls(stated or 0.0)
-        size = quiet_residual(task) if stated is None else stated
-        if size > 0:
-            return cls(size, adapts=stated is None)
-        if stated is None:
-            raise ValueError(
-                "the plain cycloid does not bend this plant, so that 5 % of that is no limit; give "
-                "a residual limit above 0"
-            )
+    if stated is not None:
+        stated = not_negative("residual limit", stated, task.plant.tip_unit)
+    if task.uncertainty is None:
+        return stated or 0.0
+    size = quiet_residual(task) if stated is None else stated
+    if size > 0:
+        return size
+    if stated is None:
         raise ValueError(
-            "residual limit is 0, but no motion arrives at rest in all scenarios; omit it "
-            "(default: 5 % of the plain cycloid's largest deflection) or give one above 0"
+            "the plain cycloid does not bend this plant, so that 5 % of that is no limit; give "
+            "a residual limit above 0"
         )
+    raise ValueError(
+        "residual limit is 0, but no motion arrives at rest in all scenarios; omit it "
+        "(default: 5 % of the plain cycloid's largest deflection) or give one above 0"
+    )
 
 
 def quiet_residual(task: PointToPoint) -> float:

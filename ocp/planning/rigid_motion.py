@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from quietarm.models import JointMotion, Plant
+from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.limits import TORQUE_SPEED, Limit, Shares, TorqueSpeedLine
+from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint
 
@@ -236,11 +239,40 @@ def assumed_bounds(task: PointToPoint) -> RigidBounds:
     if "deflection" in sizes and needed.deflection > 0:
         accelerations.append(sizes["deflection"] / needed.deflection)
     largest = min(accelerations, default=math.inf)
-    return declared._replace(
+    bounds = declared._replace(
         speed=min(declared.speed, *speeds, math.inf),
         speeding_up=min(declared.speeding_up, largest),
         braking=min(declared.braking, largest),
     )
+    if math.isfinite(min(bounds.speed, bounds.speeding_up, bounds.braking, bounds.rising)):
+        return bounds
+    largest = _of_a_cycloid(task)
+    return bounds._replace(speeding_up=largest, braking=largest)
+
+
+def _of_a_cycloid(task: PointToPoint) -> float:
+    """The peak acceleration of the fastest plain cycloid that keeps all limits, within a half.
+
+    For limits of which no motion of a rigid joint tells. Infinite where none keeps them.
+    """
+
+    def keeps(duration: float) -> bool:
+        cycloid = CycloidPolynomial(0)
+        try:
+            motion = Candidate.of_profile(replace(task.certain, duration=duration), cycloid, [])
+            return not motion.exceeded(task.limits)
+        except SolverFailedError:
+            return False
+
+    rounds = 12  # to a few thousand seconds, or a fraction of a millisecond
+    duration = 1.0
+    if not keeps(duration):
+        longer = (duration * 2.0**k for k in range(1, rounds))
+        duration = next(filter(keeps, longer), math.inf)
+    else:
+        shorter = (duration / 2.0**k for k in range(1, rounds))
+        duration = 2 * next((time for time in shorter if not keeps(time)), 2.0**-rounds)
+    return 2 * math.pi * abs(task.span) / duration**2 if math.isfinite(duration) else math.inf
 
 
 def largest_deflection(task: PointToPoint) -> float:

@@ -8,7 +8,6 @@ from dataclasses import replace
 from quietarm.ocp.errors import InfeasibleTaskError
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.residual_limit import ResidualLimit
 from quietarm.ocp.planning.rigid_motion import rigid_duration
 from quietarm.ocp.planning.rigid_pass import least_duration, values_at_rest
 from quietarm.ocp.task import PointToPoint
@@ -21,10 +20,14 @@ _SURE = 0.95
 not quite linear, and the bound is a sum over places."""
 
 
-def arrives_at_rest(task: PointToPoint, residual_limit: ResidualLimit) -> bool:
+def arrives_at_rest(task: PointToPoint, residual_limit: float) -> bool:
     """Whether the tip is at rest before and after the move, in all that a task asks for."""
-    still = residual_limit.size == 0 and not residual_limit.adapts
-    return still and task.initial is None and task.final is None and task.uncertainty is None
+    return (
+        residual_limit == 0
+        and task.initial is None
+        and task.final is None
+        and task.uncertainty is None
+    )
 
 
 def refuse_too_short(task: PointToPoint, at_rest: bool = False) -> None:

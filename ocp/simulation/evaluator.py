@@ -48,9 +48,9 @@ class Values:
     arrival: Array
     limited: Array
 
-    def take(self, rows: slice) -> Self:
-        """Some rows."""
-        return type(self)(**{name: part[rows] for name, part in vars(self).items()})
+    def take(self, row: int) -> Self:
+        """One row, or of arrays by candidate and scenario one candidate."""
+        return type(self)(**{name: part[row] for name, part in vars(self).items()})
 
 
 class Evaluator:

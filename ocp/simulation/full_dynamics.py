@@ -180,7 +180,6 @@ def _sample(torques: Array, speeds: Array) -> Sample:
         dW=[],
         ddW=[],
         tips=[],
-        tip_speeds=[],
         torques=[ca.DM(row).T for row in torques],
     )
 

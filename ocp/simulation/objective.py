@@ -1,10 +1,8 @@
-"""F1, F2 and the diagnostics of a motion: each is defined here, once."""
+"""F2 of a motion: the energy, from its powers at the nodes of steps."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
 from functools import lru_cache
 
 import casadi as ca
@@ -12,7 +10,6 @@ import numpy as np
 
 from quietarm.models import Expression
 from quietarm.ocp.energy import Energy
-from quietarm.ocp.limits import RESIDUAL, Quantity, Ranged
 from quietarm.ocp.sample import Sample, total
 from quietarm.ocp.simulation.collocation import GAUSS_WEIGHTS, NODES, TO_QUADRATIC
 from quietarm.ocp.simulation.mesh import Mesh
@@ -114,65 +111,3 @@ def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
         ca.DM.triplet(*at, cubic.ravel().tolist(), len(nodes), steps),
         ca.DM.triplet(*at, quartic.ravel().tolist(), len(nodes), steps),
     )
-
-
-@dataclass(frozen=True)
-class Motion(Ranged):
-    """Objectives and peaks of a motion, by any integrator.
-
-    Attributes
-    ----------
-    residual : float
-        F1: largest tip displacement in the residual window after arrival [m]; if the task has a
-        `final` state, from the free vibration of that state.
-    energy : float
-        F2: the task's energy, by default the integral of abs(torque * speed) over the move [J].
-    net_work : float
-        Integral of torque * speed over the move [J]: dissipated and stored energy.
-    peak_torque, peak_speed, peak_acceleration : float
-        Largest absolute values of any joint during the move [N m, rad/s, rad/s^2].
-    peak_deflection : float
-        Largest absolute tip displacement during the move [m].
-    overshoot : float
-        How far the joint exceeds the target [rad], 0 if it does not.
-    peak_jerk : float or None
-        Largest absolute value during the move [rad/s^3]; None where the acceleration jumps.
-    ranges : mapping of str to (float, float)
-        Least and largest value of each quantity that has a limit by direction, or no peak above.
-    """
-
-    residual: float
-    energy: float
-    net_work: float
-    peak_torque: float
-    peak_speed: float
-    peak_acceleration: float
-    peak_deflection: float
-    overshoot: float
-    peak_jerk: float | None = None
-    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
-
-    def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """As of `Ranged`; from minus to plus the peak where no more is known."""
-        if quantity.name in self.ranges:
-            return self.ranges[quantity.name]
-        peak = self.peak(quantity.name)
-        return -peak, peak
-
-    def states(self, name: str) -> bool:
-        """Whether the peak of a quantity is stated: an older file has none of a newer one."""
-        return name in self.ranges or getattr(self, f"peak_{name}", None) is not None
-
-    def peak(self, name: str) -> float:
-        """The residual, or the peak of a quantity, by name: infinite where it is not known."""
-        if name in (RESIDUAL, "energy"):
-            return float(getattr(self, name))
-        value = getattr(self, f"peak_{name}", None)
-        if value is not None:
-            return float(value)
-        least, largest = self.ranges.get(name, (-math.inf, math.inf))
-        return max(-least, largest)
-
-
-PEAKS = tuple(entry.name for entry in fields(Motion) if entry.name.startswith("peak_"))
-"""Attributes of a motion that are peaks; what else has a peak has a range."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from quietarm.ocp.checks import has_no
 from quietarm.ocp.record import Setting
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.solver import NAME, OPTIONS, Solver
+from quietarm.ocp.solvers.solver import NAME, Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
 SOLVERS: Mapping[str, type[Solver]] = {Sqp.name: Sqp, Ipopt.name: Ipopt}
@@ -15,7 +16,7 @@ SOLVERS: Mapping[str, type[Solver]] = {Sqp.name: Sqp, Ipopt.name: Ipopt}
 
 
 def stand_in(solver: Solver) -> Solver | None:
-    """What is tried where a solver fails, with its options: IPOPT; None where that failed."""
+    """What is tried where a solver fails, with its options: IPOPT; None where IPOPT failed."""
     return None if isinstance(solver, Ipopt) else solver.as_kind(Ipopt)
 
 
@@ -25,11 +26,18 @@ def other_solver(solver: Solver) -> Solver:
 
 
 def stated_solver(settings: Mapping[str, Setting]) -> Solver | None:
-    """The solver that the settings of a record state; None where they state none."""
+    """The solver that the settings of a record state; None where they state none.
+
+    ValueError where they state an option that it does not have, or one out of range.
+    """
     kind = SOLVERS.get(str(settings.get(NAME)))
     if kind is None:
         return None
-    options: dict[str, Any] = {
-        option: settings[f"{NAME}_{option}"] for option in OPTIONS if f"{NAME}_{option}" in settings
-    }
+    names = {entry.setting: entry.name for entry in kind.stated_options()}
+    options = dict[str, Any]()
+    for setting, value in settings.items():
+        if setting.startswith(f"{NAME}_"):
+            if setting not in names:
+                raise ValueError(has_no(kind.name, "setting", setting, names))
+            options[names[setting]] = value
     return kind(**options)

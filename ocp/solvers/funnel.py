@@ -20,12 +20,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.solvers.quadratic import Model, Multipliers, Steps, convexify, least_steps
+
+if TYPE_CHECKING:
+    from quietarm.ocp.solvers.sqp import Sqp
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -82,16 +85,15 @@ class End(Enum):
 class Course(NamedTuple):
     """How rows are led to their minima.
 
-    The objective is smoothed over the widths, one after another, the last of them 0. Trust regions
-    have the radius `reach` at first. A row is solved where the model promises less than the
-    `tolerance`, as a share of f; it has at most so many iterations. With a `log` each is a line.
+    By the options of a solver: a row is solved where the model promises less than its tolerance, as
+    a share of f; it has at most so many iterations, and with a log each is a line. The objective is
+    smoothed over the widths, one after another, the last of them 0. Trust regions have the radius
+    `reach` at first.
     """
 
+    solver: Sqp
     widths: tuple[float, ...] = WIDTHS
     reach: float = 0.25
-    tolerance: float = 1e-9
-    iterations: int = 500
-    log: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,9 +113,9 @@ class Ended:
 def minimise(
     programs: RowPrograms,
     x: Array,
+    course: Course,
     *,
     groups: Index | None = None,
-    course: Course | None = None,
 ) -> Ended:
     """Minimise every row from its start.
 
@@ -123,20 +125,20 @@ def minimise(
         What is minimised. The linear entries of v are within their bounds from the start on.
     x : ndarray, shape (rows, n)
         The starts.
+    course : Course
+        How they are led.
     groups : ndarray, shape (rows,), optional
         Rows of one number are starts of one program: once half of them, and more than one, agree on
         the least f, the others are stopped.
-    course : Course, optional
-        How they are led.
     """
-    course = course or Course()
+    solver = course.solver
     descent = _Descent(programs, x, groups, course)
-    if course.log:
+    if solver.log:
         print("iter  starts   objective  violation     radius  smoothing")
-    for number in range(course.iterations):
+    for number in range(solver.iterations):
         if not len(descent.going):
             break
-        if course.log:
+        if solver.log:
             print(descent.log_line(number))
         descent.iterate()
     ends = [End.UNFINISHED if end is None else end for end in descent.ends]
@@ -149,7 +151,7 @@ def minimise(
     )
 
 
-class _Attempt(NamedTuple):
+class _TriedSteps(NamedTuple):
     """A step of each row that is going, and what comes of it.
 
     `promised` is the descent of the quadratic model, `sharper` whether the row goes on to the next
@@ -208,7 +210,7 @@ class _Descent:
         self.x = x.copy()
         self.groups = groups
         self.widths = np.array(course.widths)
-        self.tolerance = course.tolerance
+        self.tolerance = course.solver.tolerance
         rows, bounded = programs.lower.shape
         self.going = np.arange(rows)
         self.stage = np.zeros(rows, dtype=int)
@@ -259,7 +261,7 @@ class _Descent:
         last = ~attempt.sharper & (self.width(rows) == 0)
         self._end(small & last & (self.violation[rows] <= self.met))
 
-    def _attempt(self, hessian: Array) -> _Attempt:
+    def _attempt(self, hessian: Array) -> _TriedSteps:
         """The step of least quadratic model, and whether it is accepted."""
         rows = self.going
         model = self.model
@@ -283,7 +285,7 @@ class _Descent:
             good,
         )
         for_f = (promised > self.switch * self.violation[rows] ** 2) & ~sharper
-        return _Attempt(step, promised, sharper, trial, for_f, good)
+        return _TriedSteps(step, promised, sharper, trial, for_f, good)
 
     def _sharper(self, step: Steps, promised: Array) -> Flags:
         """Which rows go on to the next stage with this step."""
@@ -335,7 +337,7 @@ class _Descent:
             good = np.where(step.met[places], good, restores)
         return good & np.isfinite(trial.objective) & np.isfinite(after)
 
-    def _correct(self, hessian: Array, attempt: _Attempt) -> None:
+    def _correct(self, hessian: Array, attempt: _TriedSteps) -> None:
         """Second-order corrections of the steps that are not good."""
         step = attempt.step
         trial = attempt.trial
@@ -365,7 +367,7 @@ class _Descent:
         step.d[again[better]] = corrected.d[better]
         trial.put(again[better], second.take(better))
 
-    def _resize(self, attempt: _Attempt, at_side: Flags) -> None:
+    def _resize(self, attempt: _TriedSteps, at_side: Flags) -> None:
         """Trust regions that shrink to where a parabola through f has its least, or grow."""
         good = attempt.good
         for_f = attempt.for_f
@@ -381,7 +383,7 @@ class _Descent:
         following = np.where(growing, self.grow * radius, following)
         self.radius[self.going] = np.where(good, following, np.minimum(shrunk, radius))
 
-    def _move(self, attempt: _Attempt) -> None:
+    def _move(self, attempt: _TriedSteps) -> None:
         """Take the good steps."""
         rows = self.going
         good = attempt.good

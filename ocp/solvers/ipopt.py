@@ -34,8 +34,8 @@ from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.sample import total
 from quietarm.ocp.simulation.objective import integrated, smooth_power
 from quietarm.ocp.simulation.rollout import Simulation, SymbolicRollout
-from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, options_of, run_ipopt
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, shadow_prices
+from quietarm.ocp.solvers.nlp import OPTIONS, compile_nlp, run_ipopt
+from quietarm.ocp.solvers.problem import Program, Solution, shadow_prices
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.uncertainty import Scenario
 
@@ -77,10 +77,19 @@ class Ipopt(Solver):
 
     name: ClassVar[str] = "ipopt"
 
+    @property
+    def own_options(self) -> dict[str, str | int | float]:
+        """What IPOPT is told of these options, by its own names."""
+        return {
+            "tol": self.tolerance,
+            "max_iter": self.iterations,
+            "print_level": 5 if self.log else 0,  # 5 has a line for each iteration
+        }
+
     @on_one_thread
     def solve(
         self,
-        problems: Sequence[NonlinearProgram],
+        problems: Sequence[Program],
         starts: Sequence[Array],
         *,
         warm: bool = False,
@@ -117,15 +126,14 @@ class _Form(NamedTuple):
     peak: str | None
 
     @classmethod
-    def of(cls, problem: NonlinearProgram) -> _Form:
+    def of(cls, problem: Program) -> _Form:
         """The form of a problem."""
-        transcription, scalarization = problem
         return cls(
-            scenarios=transcription.task.scenarios,
-            tip_rows=tuple(map(len, transcription.tip_rows)),
-            at_rest=scalarization.at_rest,
-            bounds_residual=scalarization.bounds_residual,
-            peak=scalarization.peak,
+            scenarios=problem.task.scenarios,
+            tip_rows=tuple(map(len, problem.tip_rows)),
+            at_rest=problem.at_rest,
+            bounds_residual=problem.bounds_residual,
+            peak=problem.peak,
         )
 
 
@@ -175,7 +183,7 @@ def _build_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: boo
     }
     options = {
         **(_WARM if warm else _OPTIONS),
-        **options_of(solver),
+        **solver.own_options,
         "acceptable_obj_change_tol": solver.tolerance / 10,
     }
     compiled_solver = compile_nlp(nlp, options)
@@ -217,27 +225,26 @@ def _round_off(energy: Energy, rollout: SymbolicRollout, width: ca.MX) -> Any:
 class _Numbers:
     """A problem's numbers: parameters and bounds of its program, and what its solution means."""
 
-    def __init__(self, problem: NonlinearProgram, warm: bool, solver: Ipopt) -> None:
+    def __init__(self, problem: Program, warm: bool, solver: Ipopt) -> None:
         self.problem = problem
         # Shares of the plain motion's mean power over which |power| is rounded off, run by run.
         widths = (0.5, 0.05, 0.0)
         self.widths = widths[-1:] if warm else widths
-        transcription, scalarization = problem
-        task = transcription.task
-        simulation = transcription.batch.simulation
+        task = problem.task
+        simulation = problem.batch.simulation
         self.program = compile_program(simulation, _Form.of(problem), solver, warm)
-        shape = len(task.scenarios), transcription.wanted.size
-        wanted = np.broadcast_to(transcription.wanted - scalarization.offset, shape)
-        self.of_motion = [task.row, wanted.T, *transcription.tip_rows]
-        energy, missed, peaks = self.figures(transcription.profile.plain)
+        shape = len(task.scenarios), problem.wanted.size
+        wanted = np.broadcast_to(problem.wanted - problem.offset, shape)
+        self.of_motion = [task.row, wanted.T, *problem.tip_rows]
+        energy, missed, peaks = self.figures(problem.profile.plain)
         swing = np.abs(missed).max(axis=0)
         self.scale = np.where(swing > 0, swing, 1.0)
         self.energy = energy or 1.0
         self.scales = {name: peak or 1.0 for name, peak in peaks.items()}
-        peak_scale = self.scales.get(scalarization.peak or "", 0.0)
-        of_energy, of_peak = scalarization.weights(self.energy, peak_scale)
+        peak_scale = self.scales.get(problem.peak or "", 0.0)
+        of_energy, of_peak = problem.weights(self.energy, peak_scale)
         self.of_energy = of_energy / self.energy
-        sides = transcription.limits[scalarization.peak or RESIDUAL].sides
+        sides = problem.limits_of_task[problem.peak or RESIDUAL].sides
         scales = list(self.scales.values())
         weights = [self.of_energy, of_peak]
         self.parameters = [*self.of_motion, self.scale, scales, sides, weights]
@@ -245,29 +252,29 @@ class _Numbers:
     def figures(self, coefficients: Array) -> tuple[float, Array, dict[str, float]]:
         """Energy [J], what is missed on arrival in every scenario, residual and peaks by name."""
         energy, missed, *values = self.program.figures(coefficients, *self.of_motion)
-        transcription = self.problem.transcription
-        names = RESIDUAL, *(limit.name for limit in transcription.task.limits)
+        problem = self.problem
+        names = RESIDUAL, *(limit.name for limit in problem.task.limits)
         peaks = {
-            name: float(transcription.limits[name].peak(value.min(), value.max()))
+            name: float(problem.limits_of_task[name].peak(value.min(), value.max()))
             for name, value in zip(names, values)
         }
         return energy.item(), missed, peaks
 
     def solve(self, start: Array) -> Solution:
         """Run IPOPT for one width after another."""
-        transcription, scalarization = self.problem
-        box = transcription.profile.box(scalarization.bound)
+        problem = self.problem
+        box = problem.profile.box(problem.bound)
         x = np.clip(start, *box)
         lower, upper = box
         iterations = 0
         stop = None
-        if scalarization.peak is not None:
-            peak = self.figures(x)[-1][scalarization.peak]
-            x = np.append(x, peak / self.scales[scalarization.peak])
+        if problem.peak is not None:
+            peak = self.figures(x)[-1][problem.peak]
+            x = np.append(x, peak / self.scales[problem.peak])
             lower = np.append(lower, -np.inf)
             upper = np.append(upper, np.inf)
         for width in self.widths:
-            mean_power = self.energy / transcription.task.duration
+            mean_power = self.energy / problem.task.duration
             parameters = [*self.parameters, [width * mean_power]]
             stop = run_ipopt(
                 self.program.solver,
@@ -279,10 +286,10 @@ class _Numbers:
             x = stop.unknowns
             iterations += stop.iterations
         assert stop is not None
-        coefficients = np.clip(x[: transcription.profile.size], *box)
+        coefficients = np.clip(x[: problem.profile.size], *box)
         energy, missed, peaks = self.figures(coefficients)
         status = SolveStatus.from_ipopt(stop.return_status)
-        if scalarization.at_rest and status.solved:
+        if problem.at_rest and status.solved:
             peaks[RESIDUAL] = 0.0
         return Solution(
             coefficients,
@@ -290,7 +297,7 @@ class _Numbers:
             peaks,
             status,
             iterations,
-            arrival=missed + transcription.wanted,
+            arrival=missed + problem.wanted,
             shadow_prices=self.prices(stop.multipliers),
             reason=stop.return_status.replace("_", " ").lower(),
         )
@@ -302,7 +309,7 @@ class _Numbers:
             "below peak": (-np.inf, 0.0),
             "above peak": (0.0, np.inf),
         }
-        for limit in self.problem.scalarization.limits:
+        for limit in self.problem.limits:
             scale = self.scales[limit.name]
             bounds[limit.name] = (limit.lower / scale, limit.upper / scale)
         counts = self.program.counts
@@ -314,18 +321,18 @@ class _Numbers:
     def prices(self, multipliers: Array) -> dict[str, float]:
         """What the least energy falls by if a limit is widened [J by its unit]."""
         counts = self.program.counts
-        transcription, scalarization = self.problem
+        problem = self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])
         by_name = dict(zip(counts, parts))
         bounded = {
             name: by_name[name] / self.scales[name] for name in by_name.keys() & self.scales.keys()
         }
         of_arrival = by_name["arrival"]
-        if scalarization.at_rest:
+        if problem.at_rest:
             of_arrival = of_arrival / self.scale
-        tips = transcription.tip_rows[0]
+        tips = problem.tip_rows[0]
         return shadow_prices(
-            scalarization,
+            problem,
             self.of_energy,
             bounded,
             of_arrival,

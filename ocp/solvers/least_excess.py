@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.batch import Derivatives
-from quietarm.ocp.solvers.problem import NonlinearProgram
+from quietarm.ocp.solvers.problem import Program
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Excess(NamedTuple):
 
 
 @on_one_thread
-def least_excess(problem: NonlinearProgram, start: Array, reach: float = 3.0) -> Excess:
+def least_excess(problem: Program, start: Array, reach: float = 3.0) -> Excess:
     """The least share by which all limits but the residual's have to be widened, from a start.
 
     Coefficients may move by the reach at first.
@@ -66,24 +66,23 @@ def least_excess(problem: NonlinearProgram, start: Array, reach: float = 3.0) ->
 class _Linearised:
     """A problem about a motion: rows of its limits, and of what is wanted on arrival."""
 
-    def __init__(self, problem: NonlinearProgram, coefficients: Array) -> None:
-        transcription = problem.transcription
+    def __init__(self, problem: Program, coefficients: Array) -> None:
         self.coefficients = coefficients
-        self._box = transcription.profile.box(problem.scalarization.bound)
-        motions = transcription.evaluate(coefficients)
+        self._box = problem.profile.box(problem.bound)
+        motions = problem.evaluate(coefficients)
         self._limit_rows(problem, motions)
         self._arrival_rows(problem, motions)
 
-    def _limit_rows(self, problem: NonlinearProgram, motions: Derivatives) -> None:
+    def _limit_rows(self, problem: Program, motions: Derivatives) -> None:
         """Values and their Jacobian as shares of the limits' sizes, and both bounds."""
         values = []
         tables = []
         uppers = []
         lowers = []
-        for limit in problem.scalarization.limits:
+        for limit in problem.limits:
             if limit.name == RESIDUAL or not np.isfinite(limit.size):
                 continue
-            place = problem.transcription.batch.places[limit.name]
+            place = problem.batch.places[limit.name]
             counted = slice(None if limit.quantity.in_scenarios else 1)
             values.append(motions.limited[counted, place].ravel() / limit.size)
             table = motions.limited_jacobian[counted, place]
@@ -96,19 +95,17 @@ class _Linearised:
         self.upper = np.concatenate(uppers)
         self.lower = np.concatenate(lowers)
 
-    def _arrival_rows(self, problem: NonlinearProgram, motions: Derivatives) -> None:
+    def _arrival_rows(self, problem: Program, motions: Derivatives) -> None:
         """What has to be 0, or within 1: scaled states on arrival, or displacements after it."""
-        transcription = problem.transcription
-        scalarization = problem.scalarization
-        missed = motions.arrival - transcription.wanted + scalarization.offset
-        if scalarization.at_rest:
-            scale = transcription.arrival_scale
+        missed = motions.arrival - problem.wanted + problem.offset
+        if problem.at_rest:
+            scale = problem.arrival_scale
             self.arrival = missed[0] / scale
             self.arrival_table = motions.arrival_jacobian[0] / scale[:, None]
             self.allowed = 0.0
             return
-        rows = list(zip(transcription.tip_rows, missed, motions.arrival_jacobian))
-        limit = scalarization.residual_limit
+        rows = list(zip(problem.tip_rows, missed, motions.arrival_jacobian))
+        limit = problem.residual_limit
         self.arrival = np.concatenate([tips @ state / limit for tips, state, _ in rows])
         self.arrival_table = np.concatenate([tips @ table / limit for tips, _, table in rows])
         self.allowed = 1.0

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from quietarm.models.compiled import Compiled
 from quietarm.ocp.cost import COST
-from quietarm.ocp.solvers.solver import Solver
 
 Options = Mapping[str, str | int | float]
 OPTIONS: dict[str, str | int | float] = {
@@ -32,15 +31,6 @@ OPTIONS: dict[str, str | int | float] = {
     "mumps_pivot_order": 2,
     "expect_infeasible_problem": "yes",
 }
-
-
-def options_of(solver: Solver) -> dict[str, str | int | float]:
-    """IPOPT's options that say what a solver's say."""
-    return {
-        "tol": solver.tolerance,
-        "max_iter": solver.iterations,
-        "print_level": 5 if solver.log else 0,  # 5 has a line for each iteration
-    }
 
 
 class Stop(NamedTuple):

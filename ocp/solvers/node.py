@@ -89,7 +89,7 @@ def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
     return [sums.get(i, zero) for i in range(rows)]
 
 
-class Tables:
+class TableFunction:
     """Tables as a function of their symbols."""
 
     def __init__(self, inputs: Sequence[ca.MX], *tables: Table) -> None:
@@ -133,11 +133,11 @@ class Path:
         y_a = jacobian(y, a)
         self.linear = not ca.depends_on(ca.veccat(*y_a.values()), ca.veccat(*a, *move))
         self._value = ca.Function("y", inputs, y)
-        self._jacobian = Tables(inputs, y_a)
+        self._jacobian = TableFunction(inputs, y_a)
         if not self.linear:
             multipliers = symbols(self.count, shape)
             lagrangian = sum(w * x for w, x in zip(multipliers, y))
-            self._hessian = Tables([*inputs, *multipliers], hessian(lagrangian, a))
+            self._hessian = TableFunction([*inputs, *multipliers], hessian(lagrangian, a))
 
     def value(self, a: Sequence[ca.MX], move: Sequence[ca.MX]) -> list[ca.MX]:
         """The values y at the nodes."""
@@ -265,12 +265,14 @@ class Node:
         self.of_energy = len(of_energy)
         self.count = len(o)
         outputs = {(i, 0): x for i, x in enumerate(o)}
-        self._first = Tables(inputs, outputs, jacobian(f, y), jacobian(o, v))
+        self._first = TableFunction(inputs, outputs, jacobian(f, y), jacobian(o, v))
         multipliers = symbols(m + self.count, shape)
         lagrangian = sum(w * x for w, x in zip(multipliers, [*f, *o]))
         # the place on a path of several joints, the first of v, enters through tables
         by_place_first = len(sample.joints) > 1
-        self._second = Tables([*inputs, *multipliers], hessian(lagrangian, v, by_place_first))
+        self._second = TableFunction(
+            [*inputs, *multipliers], hessian(lagrangian, v, by_place_first)
+        )
 
     def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], Table, Table]:
         """The outputs, the Jacobian of f by y, and that of the outputs by v.

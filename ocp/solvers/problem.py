@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Generic, Self, TypeVar
 
 import daqp
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.objectives import ENERGY
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.ocp.solvers.batch import Derivatives, batch_of
+from quietarm.ocp.solvers.batch import Batch, Derivatives, batch_of
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
@@ -35,59 +34,132 @@ def still_of(task: PointToPoint) -> float:
     return STILL * task.smallness
 
 
-class Transcription:
-    """A task along a profile in a number of steps.
+LEAST_ENERGY = {ENERGY: 1.0}
+T = TypeVar("T")
+
+
+class _OfSteps(Generic[T]):
+    """A value of a program that follows from its task, profile and steps: computed once for all.
+
+    Programs that differ in what they ask for alone share it.
+    """
+
+    def __init__(self, compute: Callable[[Program], T]) -> None:
+        self._compute = compute
+        self.__doc__ = compute.__doc__
+
+    def __get__(self, program: Program, owner: type[Program] | None = None) -> T:
+        known = program.computed
+        name = self._compute.__name__
+        if name not in known:
+            known[name] = self._compute(program)
+        return known[name]
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A nonlinear program over a profile's coefficients: a task on its steps, and what is asked.
+
+    One objective is made of energy, residual and peaks; the residual and quantities are limited.
 
     Attributes
     ----------
-    evaluator : Evaluator
-        Evaluates candidates by these steps.
-    batch : Batch
-        Their derivatives, in any scenario.
-    errors : ndarray, shape (scenarios, ranges)
-        The plant's errors in every scenario, the nominal one first.
-    limits : dict of str to Limit
-        The task's by name; and one of the residual, which may have any size.
-    wanted : ndarray, shape (2 * modes,)
-        The state that is wanted on arrival.
+    task, profile, steps
+        What moves and where, how, and in how many steps.
+    limits : tuple of Limit
+        Of the residual, 0 for rest on arrival, and of quantities.
+    bound : float or None
+        Largest absolute coefficient, as the profile's `box` takes it.
+    minimise : mapping of str to float
+        Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is minimised.
+    offset : ndarray, shape (scenarios, 2 * modes), or 0
+        Added to the state on arrival of every scenario [m, m/s]: what the steps miss of it.
+    computed : dict
+        What follows from task, profile and steps; shared by programs that have these in common.
     """
 
-    def __init__(self, task: PointToPoint, profile: JointProfile, steps: int) -> None:
-        self.task = task
-        self.profile = profile
-        self.steps = steps
-        self.wanted = np.array(task.final_state)
-        self.evaluator = Evaluator(task, profile, steps)
-        self.errors = self.evaluator.scenarios
-        self.batch = batch_of(self.evaluator.simulation)
-        residual = Limit.of_residual(np.inf, task.plant.tip_unit)
-        self.limits = {limit.name: limit for limit in (*task.limits, residual)}
+    task: PointToPoint
+    profile: JointProfile
+    steps: int
+    limits: tuple[Limit, ...] = ()
+    bound: float | None = None
+    minimise: Mapping[str, float] = field(default_factory=lambda: LEAST_ENERGY)
+    offset: NDArray[np.float64] | float = 0.0
+    computed: dict[str, Any] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(
-        cls, task: PointToPoint, profile: JointProfile, steps: int | None = None
-    ) -> Transcription:
+    def of(cls, task: PointToPoint, profile: JointProfile, steps: int | None = None) -> Self:
         """On so many steps, or on as many as the task and the profile take to begin with."""
         return cls(task, profile, steps or first_steps(task, profile))
+
+    def asking(self, **changes: Any) -> Self:
+        """The same task on the same steps, with other limits, bound, objective or offset."""
+        return replace(self, **changes)
+
+    def within(
+        self,
+        residual_limit: float = np.inf,
+        bound: float | None = None,
+        minimise: Mapping[str, float] = LEAST_ENERGY,
+    ) -> Self:
+        """Within the task's limits and one of the residual [m], the least energy or another sum."""
+        limits = Limit.of_residual(residual_limit, self.task.plant.tip_unit), *self.task.limits
+        return self.asking(limits=limits, bound=bound, minimise=minimise, offset=0.0)
+
+    def on_steps_of(self, other: Program) -> Self:
+        """What this program asks for, of another's task on its steps."""
+        return replace(
+            self,
+            task=other.task,
+            profile=other.profile,
+            steps=other.steps,
+            computed=other.computed,
+        )
+
+    @_OfSteps
+    def evaluator(self) -> Evaluator:
+        """Evaluates candidates by these steps."""
+        return Evaluator(self.task, self.profile, self.steps)
+
+    @_OfSteps
+    def batch(self) -> Batch:
+        """Their derivatives, in any scenario."""
+        return batch_of(self.evaluator.simulation)
+
+    @_OfSteps
+    def errors(self) -> Array:
+        """The plant's errors, shape (scenarios, ranges), the nominal one first."""
+        return self.evaluator.scenarios
+
+    @_OfSteps
+    def wanted(self) -> Array:
+        """The state that is wanted on arrival, shape (2 * modes,)."""
+        return np.array(self.task.final_state)
+
+    @_OfSteps
+    def limits_of_task(self) -> dict[str, Limit]:
+        """The task's limits by name; and one of the residual, which may have any size."""
+        residual = Limit.of_residual(np.inf, self.task.plant.tip_unit)
+        return {limit.name: limit for limit in (*self.task.limits, residual)}
 
     @property
     def tip_rows(self) -> list[Array]:
         """For each scenario, rows that give tip displacements from the state on arrival."""
         return self.evaluator.tip_rows
 
-    @cached_property
+    @_OfSteps
     def plain(self) -> Derivatives:
         """The plain motion, in all scenarios."""
         return self.evaluate(self.profile.plain)
 
-    @cached_property
+    @_OfSteps
     def arrival_scale(self) -> Array:
         """Scale of the state on arrival, shape (2 * modes,)."""
         scale = np.abs(self.plain.arrival_jacobian).max(axis=(0, 2))
         scale[scale == 0] = 1.0
         return scale
 
-    @cached_property
+    @_OfSteps
     def energy_scale(self) -> float:
         """Energy of the plain motion [J]."""
         return float(self.plain.energy[0]) or 1.0
@@ -110,74 +182,6 @@ class Transcription:
     def measure(self, values: Values, offset: Array | float = 0.0) -> Evaluation:
         """What one candidate's values in all scenarios mean, with this added to its arrivals."""
         return self.evaluator.of_values(values, offset)
-
-
-def first_steps(task: PointToPoint, profile: JointProfile) -> int:
-    """Steps of the solver to begin with; ValueError where the move is too long for it."""
-    # 8 for each term, since the power then changes sign more often, within 48 and 80; with limits
-    # 80, since these hold only at the nodes.
-    fewest = 80 if task.limits else 48
-    of_profile = 8 * (profile.size - 2)
-    least = min(max(fewest, of_profile), 80)
-    at_once = task.plant.steps_at_once
-    steps = at_once * math.ceil(default_steps(task, least=least) / at_once)
-    if steps > MOST_SOLVER_STEPS:
-        raise ValueError(
-            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
-            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
-        )
-    return steps
-
-
-def evaluate(transcriptions: Sequence[Transcription], coefficients: Array) -> list[Derivatives]:
-    """A candidate of each of several transcriptions of one batch, in all its scenarios.
-
-    Coefficients have shape (transcriptions, profile.size); all have as many scenarios.
-    """
-    derivatives = transcriptions[0].batch.in_scenarios(
-        coefficients,
-        np.array([transcription.task.row for transcription in transcriptions]),
-        np.array([transcription.errors for transcription in transcriptions]),
-    )
-    return [
-        Derivatives(**{name: part[i] for name, part in vars(derivatives).items()})
-        for i in range(len(transcriptions))
-    ]
-
-
-def transcribe(
-    tasks: Sequence[PointToPoint], profile: JointProfile, steps: int
-) -> list[Transcription]:
-    """Many tasks of one plant, whose plain motions are evaluated in one call."""
-    transcriptions = [Transcription(task, profile, steps) for task in tasks]
-    plain = np.repeat(profile.plain[None], len(transcriptions), axis=0)
-    for transcription, motion in zip(transcriptions, evaluate(transcriptions, plain)):
-        transcription.__dict__["plain"] = motion
-    return transcriptions
-
-
-LEAST_ENERGY = {ENERGY: 1.0}
-
-
-class Scalarization(NamedTuple):
-    """What is minimised, and what is limited: one objective made of energy, residual and peaks.
-
-    Attributes
-    ----------
-    limits : tuple of Limit
-        Of the residual, 0 for rest on arrival, and of quantities.
-    bound : float or None
-        Largest absolute coefficient, as the profile's `box` takes it.
-    minimise : mapping of str to float
-        Weights of the energy [1/J] and of at most one peak [1/m, ...], whose sum is minimised.
-    offset : ndarray, shape (scenarios, 2 * modes), or 0
-        Added to the state on arrival of every scenario [m, m/s]: what the steps miss of it.
-    """
-
-    limits: tuple[Limit, ...]
-    bound: float | None = None
-    minimise: Mapping[str, float] = LEAST_ENERGY
-    offset: NDArray[np.float64] | float = 0.0
 
     @property
     def peak(self) -> str | None:
@@ -207,24 +211,43 @@ class Scalarization(NamedTuple):
         return self.peak == RESIDUAL or (np.isfinite(self.residual_limit) and not self.at_rest)
 
 
-class NonlinearProgram(NamedTuple):
-    """A nonlinear program over a profile's coefficients."""
+def first_steps(task: PointToPoint, profile: JointProfile) -> int:
+    """Steps of the solver to begin with; ValueError where the move is too long for it."""
+    # 8 for each term, since the power then changes sign more often, within 48 and 80; with limits
+    # 80, since these hold only at the nodes.
+    fewest = 80 if task.limits else 48
+    of_profile = 8 * (profile.size - 2)
+    least = min(max(fewest, of_profile), 80)
+    at_once = task.plant.steps_at_once
+    steps = at_once * math.ceil(default_steps(task, least=least) / at_once)
+    if steps > MOST_SOLVER_STEPS:
+        raise ValueError(
+            f"duration is {task.duration:g} s, {steps / 2:.0f} radians of the plant's fastest "
+            f"mode; the solver resolves up to {MOST_SOLVER_STEPS // 2}: give a shorter duration"
+        )
+    return steps
 
-    transcription: Transcription
-    scalarization: Scalarization
 
-    @classmethod
-    def of(
-        cls,
-        transcription: Transcription,
-        residual_limit: float = np.inf,
-        bound: float | None = None,
-        minimise: Mapping[str, float] = LEAST_ENERGY,
-    ) -> NonlinearProgram:
-        """Within a task's limits and one of the residual [m], the least energy or another sum."""
-        task = transcription.task
-        limits = Limit.of_residual(residual_limit, task.plant.tip_unit), *task.limits
-        return cls(transcription, Scalarization(limits, bound, minimise))
+def evaluate(programs: Sequence[Program], coefficients: Array) -> list[Derivatives]:
+    """A candidate of each of several programs of one batch, in all its scenarios.
+
+    Coefficients have shape (programs, profile.size); all have as many scenarios.
+    """
+    derivatives = programs[0].batch.in_scenarios(
+        coefficients,
+        np.array([program.task.row for program in programs]),
+        np.array([program.errors for program in programs]),
+    )
+    return [derivatives.take(i) for i in range(len(programs))]
+
+
+def programs_of(tasks: Sequence[PointToPoint], profile: JointProfile, steps: int) -> list[Program]:
+    """Many tasks of one plant, whose plain motions are evaluated in one call."""
+    programs = [Program(task, profile, steps) for task in tasks]
+    plain = np.repeat(profile.plain[None], len(programs), axis=0)
+    for program, motion in zip(programs, evaluate(programs, plain)):
+        program.computed["plain"] = motion
+    return programs
 
 
 @dataclass(frozen=True)
@@ -244,7 +267,7 @@ class Solution:
     iterations : int
         Iterations of the solver; `best_of_starts` adds those of the other starts.
     arrival : ndarray, shape (scenarios, 2 * modes)
-        W [m] and then W' [m/s] on arrival in every scenario, with the scalarization's offset.
+        W [m] and then W' [m/s] on arrival in every scenario, with the program's offset.
     shadow_prices : mapping of str to float
         By how much the least energy falls if a limit is widened [J by the limit's unit]; of the
         residual, too, where rest on arrival is asked for.
@@ -273,7 +296,7 @@ class Solution:
 
 
 def shadow_prices(
-    scalarization: Scalarization,
+    program: Program,
     of_energy: float,
     bounded: Mapping[str, NDArray[np.float64]],
     of_arrival: NDArray[np.float64],
@@ -288,10 +311,10 @@ def shadow_prices(
         return {}
     prices = {
         limit.name: limit.price(bounded[limit.name]) / of_energy
-        for limit in scalarization.limits
-        if limit.name in bounded and limit.name != scalarization.peak
+        for limit in program.limits
+        if limit.name in bounded and limit.name != program.peak
     }
-    if scalarization.at_rest:
+    if program.at_rest:
         prices[RESIDUAL] = price_of_rest(of_arrival, tips) / of_energy
     return prices
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.solvers.batch import Derivatives, MotionMultipliers
-from quietarm.ocp.solvers.problem import NonlinearProgram
+from quietarm.ocp.solvers.problem import Program
 from quietarm.ocp.solvers.quadratic import Model, Multipliers
 
 Array = NDArray[np.float64]
@@ -161,56 +161,54 @@ class Programs:
     box, the last `linear` ones. The `weights`, (problems, 2), are of the scaled energy and peak.
     """
 
-    def __init__(self, problems: Sequence[NonlinearProgram]) -> None:
-        self._transcriptions = [problem.transcription for problem in problems]
-        self._scalarizations = [problem.scalarization for problem in problems]
-        transcription, scalarization = problems[0]
-        self._batch = transcription.batch
-        self._size = transcription.profile.size
-        self._scenarios = len(transcription.errors)
-        self._peak = scalarization.peak
-        self._at_rest = scalarization.at_rest
+    def __init__(self, problems: Sequence[Program]) -> None:
+        self._problems = problems
+        first = problems[0]
+        self._batch = first.batch
+        self._size = first.profile.size
+        self._scenarios = len(first.errors)
+        self._peak = first.peak
+        self._at_rest = first.at_rest
         self.unknowns = self._size + (self._peak is not None)
-        self.equalities = transcription.wanted.size if self._at_rest else 0
-        shape = self._scenarios, transcription.wanted.size
+        self.equalities = first.wanted.size if self._at_rest else 0
+        shape = self._scenarios, first.wanted.size
         moves = list[tuple[float, ...]]()
         errors = list[Array]()
         energies = list[float]()
         arrivals = list[Array]()
         offsets = list[Array]()
         weights = list[tuple[float, float]]()
-        for transcription, scalarization in problems:
-            energy = transcription.energy_scale
-            peak = transcription.scale_of(self._peak) if self._peak else 0.0
-            moves.append(transcription.task.row)
-            errors.append(transcription.errors)
+        for problem in problems:
+            energy = problem.energy_scale
+            peak = problem.scale_of(self._peak) if self._peak else 0.0
+            moves.append(problem.task.row)
+            errors.append(problem.errors)
             energies.append(energy)
-            arrivals.append(transcription.arrival_scale)
-            offsets.append(np.broadcast_to(scalarization.offset - transcription.wanted, shape))
-            weights.append(scalarization.weights(energy, peak))
+            arrivals.append(problem.arrival_scale)
+            offsets.append(np.broadcast_to(problem.offset - problem.wanted, shape))
+            weights.append(problem.weights(energy, peak))
         self._move = np.array(moves)
         self._errors = np.array(errors)
         self._energy = np.array(energies)
         self._arrival = np.array(arrivals)
         self._offset = np.array(offsets)
         self.weights = np.array(weights)
-        self._constrain(problems[0].scalarization.bounds_residual)
+        self._constrain(first.bounds_residual)
 
     def _constrain(self, bounds_residual: bool) -> None:
         """Everything that is bounded, the box last."""
         constraints = dict[str, _Constraint]()
         if bounds_residual:
-            limit = np.array([entry.residual_limit for entry in self._scalarizations])
+            limit = np.array([entry.residual_limit for entry in self._problems])
             constraints[RESIDUAL] = _ResidualLimit(self._tips(), limit / self._scales(RESIDUAL))
-        limits = self._transcriptions[0].limits
+        limits = self._problems[0].limits_of_task
         for name, place in self._batch.places.items():
             scenarios = self._scenarios if limits[name].quantity.in_scenarios else 1
             bounds = self._bounds(name)
             constraints[name] = _QuantityLimit(place, scenarios, bounds, self._scales(name))
         if self._peak is not None:
             constraints[self._peak] = _Peak(constraints[self._peak], limits[self._peak])
-        pairs = zip(self._transcriptions, self._scalarizations)
-        boxes = [transcription.profile.box(entry.bound) for transcription, entry in pairs]
+        boxes = [problem.profile.box(problem.bound) for problem in self._problems]
         self._box = np.array(boxes).transpose(1, 0, 2)
         self._axes = self._batch.even_axes(boxed=bool(np.isfinite(self._box).any()))
         # the coefficients by all unknowns
@@ -226,26 +224,22 @@ class Programs:
 
     def _bounds(self, name: str) -> Array:
         """Least and largest value in each problem, infinite where it is not limited."""
-        bounds = np.array([[-np.inf, np.inf]] * len(self._scalarizations))
-        for i, scalarization in enumerate(self._scalarizations):
-            for limit in scalarization.limits:
+        bounds = np.array([[-np.inf, np.inf]] * len(self._problems))
+        for i, problem in enumerate(self._problems):
+            for limit in problem.limits:
                 if limit.name == name:
                     bounds[i] = limit.lower, limit.upper
         return bounds
 
     def _scales(self, name: str) -> Array:
-        return np.array([transcription.scale_of(name) for transcription in self._transcriptions])
+        return np.array([problem.scale_of(name) for problem in self._problems])
 
     def _tips(self) -> Array:
         """Rows that give the scaled tip displacements of every scenario, filled up with zeros."""
-        most = max(
-            len(rows) for transcription in self._transcriptions for rows in transcription.tip_rows
-        )
+        most = max(len(rows) for problem in self._problems for rows in problem.tip_rows)
         tips = list[list[Array]]()
-        for transcription, scale in zip(self._transcriptions, self._scales(RESIDUAL)):
-            padded = (
-                np.pad(rows, ((0, most - len(rows)), (0, 0))) for rows in transcription.tip_rows
-            )
+        for problem, scale in zip(self._problems, self._scales(RESIDUAL)):
+            padded = (np.pad(rows, ((0, most - len(rows)), (0, 0))) for rows in problem.tip_rows)
             tips.append([rows / scale for rows in padded])
         return np.array(tips)
 

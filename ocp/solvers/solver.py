@@ -2,21 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from typing import ClassVar
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
+from functools import partial
+from typing import Any, ClassVar, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.record import Setting
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution
+from quietarm.ocp.solvers.problem import Program, Solution
 
 NAME = "solver"
 """What a record calls it; an option that is not the default stands beside, as solver_tolerance."""
-OPTIONS = ("tolerance", "iterations")
-"""Those on which an answer depends."""
+_OPTION = "option"
+"""Metadata of a field that is an option."""
+S = TypeVar("S", bound="Solver")
+
+
+class Option(NamedTuple):
+    """What stands with a field of a solver, of which commands, records and files make an option.
+
+    Attributes
+    ----------
+    meaning : str
+        What it is, in the words of a command's help.
+    check : callable, optional
+        Takes what a message calls the option, and a value; returns the value, or raises ValueError.
+    word, unit : str
+        What a number of it is, as "a share", and its unit on the command line.
+    stated : bool
+        Whether an answer depends on it: then records state it, and commands have it.
+    name, kind, default
+        Those of the field.
+    """
+
+    meaning: str
+    check: Callable[[str, Any], Any] | None = None
+    word: str = "number"
+    unit: str = "-"
+    stated: bool = True
+    name: str = ""
+    kind: Any = float
+    default: Setting = None
+
+    @property
+    def setting(self) -> str:
+        """What a record calls it, as solver_tolerance."""
+        return f"{NAME}_{self.name}"
+
+
+def option(default: Setting, meaning: str, check: Any = None, **others: Any) -> Any:
+    """A field of a solver that is an option of it, with the entries of `Option`."""
+    return field(default=default, metadata={_OPTION: Option(meaning, check, **others)})
 
 
 @dataclass(frozen=True)
@@ -24,7 +63,8 @@ class Solver:
     """A solver and its options: `Sqp` or `Ipopt`.
 
     The same value is taken wherever a solver is chosen, and what is tried where it fails has its
-    options as well.
+    options as well, as far as it has such options. An option is a field, made by `option`, of the
+    solver that has it; what all have stand here.
 
     Parameters
     ----------
@@ -45,26 +85,47 @@ class Solver:
     example: ClassVar[str] = "a solver, as Sqp() or Ipopt(tolerance=1e-7)"
     name: ClassVar[str]
 
-    tolerance: float = 1e-9
-    iterations: int = 500
-    log: bool = False
+    tolerance: float = option(
+        1e-9,
+        "Share of the least energy that the solver may leave, of every solve; limits and rest on "
+        "arrival are kept as exactly as ever.",
+        partial(positive, most=0.01, why="it is a share"),
+        word="share",
+    )
+    iterations: int = option(
+        500,
+        "Most iterations of the solver, in one solve from one start.",
+        partial(whole, least=1, most=1_000_000),
+    )
+    log: bool = option(False, "Print a line for each iteration.", stated=False)
 
     def __post_init__(self) -> None:
-        tolerance = positive(
-            "tolerance of the solver", self.tolerance, most=0.01, why="it is a share"
-        )
-        iterations = whole(
-            "iterations of the solver",
-            self.iterations,
-            1,
-            1_000_000,
-        )
-        object.__setattr__(self, "tolerance", tolerance)
-        object.__setattr__(self, "iterations", iterations)
+        for entry in self.options():
+            if entry.check is not None:
+                words = f"{entry.name.replace('_', ' ')} of the solver"
+                value = entry.check(words, getattr(self, entry.name))
+                object.__setattr__(self, entry.name, value)
+
+    @classmethod
+    def options(cls) -> list[Option]:
+        """Its options, in the order of its fields."""
+        kinds = get_type_hints(cls)
+        return [
+            entry.metadata[_OPTION]._replace(
+                name=entry.name, kind=kinds[entry.name], default=entry.default
+            )
+            for entry in fields(cls)
+            if _OPTION in entry.metadata
+        ]
+
+    @classmethod
+    def stated_options(cls) -> list[Option]:
+        """Its options on which an answer depends."""
+        return [entry for entry in cls.options() if entry.stated]
 
     def solve(
         self,
-        problems: Sequence[NonlinearProgram],
+        problems: Sequence[Program],
         starts: Sequence[NDArray[np.float64]],
         *,
         warm: bool = False,
@@ -74,8 +135,8 @@ class Solver:
 
         Parameters
         ----------
-        problems : sequence of NonlinearProgram
-            Of any tasks, steps and scalarizations.
+        problems : sequence of Program
+            Of any tasks, steps, limits and objectives.
         starts : sequence of ndarray, each of shape (profile.size,)
             Coefficients to start from.
         warm : bool
@@ -94,14 +155,15 @@ class Solver:
     @property
     def stated(self) -> dict[str, Setting]:
         """What a record says of it: its name, and options that are not the default."""
-        usual = {option.name: option.default for option in fields(self)}
         options = {
-            f"{NAME}_{name}": getattr(self, name)
-            for name in OPTIONS
-            if getattr(self, name) != usual[name]
+            entry.setting: getattr(self, entry.name)
+            for entry in self.stated_options()
+            if getattr(self, entry.name) != entry.default
         }
         return {NAME: self.name, **options}
 
-    def as_kind(self, kind: type[Solver]) -> Solver:
-        """A solver of another kind with the options of this one."""
-        return kind(self.tolerance, self.iterations, self.log)
+    def as_kind(self, kind: type[S]) -> S:
+        """A solver of another kind with the options of this one, as far as it has them."""
+        known = {entry.name for entry in kind.options()}
+        shared = [entry.name for entry in self.options() if entry.name in known]
+        return kind(**{name: getattr(self, name) for name in shared})

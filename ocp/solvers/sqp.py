@@ -13,7 +13,7 @@ from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.solvers.funnel import SHARP, WIDTHS, Course, End, Ended, minimise
-from quietarm.ocp.solvers.problem import NonlinearProgram, Solution, evaluate, shadow_prices
+from quietarm.ocp.solvers.problem import Program, Solution, evaluate, shadow_prices
 from quietarm.ocp.solvers.programs import Programs
 from quietarm.ocp.solvers.solver import Solver
 
@@ -40,7 +40,7 @@ class Sqp(Solver):
     @on_one_thread
     def solve(
         self,
-        problems: Sequence[NonlinearProgram],
+        problems: Sequence[Program],
         starts: Sequence[Array],
         *,
         warm: bool = False,
@@ -49,57 +49,52 @@ class Sqp(Solver):
         """Solve each problem from its start; see `Solver.solve`."""
         solutions: dict[int, Solution] = {}
         course = Course(
+            self,
             widths=SHARP if warm else WIDTHS,
             # Minima of the paper's conditions lie within 0.2 of the cycloid.
             reach=0.02 if warm else 0.25,
-            tolerance=self.tolerance,
-            iterations=self.iterations,
-            log=self.log,
         )
         for places in _group_by_form(problems):
             alike = [problems[i] for i in places]
-            transcription = alike[0].transcription
-            transcription.batch.prepare(len(alike), len(transcription.errors))
+            alike[0].batch.prepare(len(alike), len(alike[0].errors))
             programs = Programs(alike)
             x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(
                 programs,
                 x,
+                course,
                 groups=None if groups is None else np.array([groups[i] for i in places]),
-                course=course,
             )
             solutions.update(zip(places, _in_units(programs, ended, alike)))
         return [solutions[i] for i in range(len(problems))]
 
 
-def _group_by_form(problems: Sequence[NonlinearProgram]) -> Iterable[list[int]]:
+def _group_by_form(problems: Sequence[Program]) -> Iterable[list[int]]:
     """The places of the problems that are solved together."""
     forms: dict[tuple[object, ...], list[int]] = {}
-    for i, (transcription, scalarization) in enumerate(problems):
+    for i, problem in enumerate(problems):
         form = (
-            transcription.batch,
-            len(transcription.errors),
-            scalarization.peak,
-            scalarization.at_rest,
-            scalarization.bounds_residual,
+            problem.batch,
+            len(problem.errors),
+            problem.peak,
+            problem.at_rest,
+            problem.bounds_residual,
         )
         forms.setdefault(form, []).append(i)
     return forms.values()
 
 
-def _in_units(
-    programs: Programs, ended: Ended, problems: Sequence[NonlinearProgram]
-) -> list[Solution]:
+def _in_units(programs: Programs, ended: Ended, problems: Sequence[Program]) -> list[Solution]:
     """The solutions in SI units."""
     coefficients = programs.coefficients(ended.x)
-    motions = evaluate([problem.transcription for problem in problems], coefficients)
+    motions = evaluate(problems, coefficients)
     prices = _shadow_prices(programs, ended, problems)
     solutions = list[Solution]()
-    for i, ((transcription, scalarization), motion) in enumerate(zip(problems, motions)):
-        peaks = transcription.measure(motion, scalarization.offset).peaks_of(0)
+    for i, (problem, motion) in enumerate(zip(problems, motions)):
+        peaks = problem.measure(motion, problem.offset).peaks_of(0)
         end = ended.ends[i]
         # A scaled state on arrival that is no larger counts as rest.
-        if scalarization.at_rest and ended.violation[i] <= 1e-8:
+        if problem.at_rest and ended.violation[i] <= 1e-8:
             peaks[RESIDUAL] = 0.0
         solutions.append(
             Solution(
@@ -108,7 +103,7 @@ def _in_units(
                 peaks,
                 _STATUS[end],
                 int(ended.iterations[i]),
-                arrival=motion.arrival + scalarization.offset,
+                arrival=motion.arrival + problem.offset,
                 shadow_prices=prices[i],
                 reason=end.value,
             )
@@ -117,25 +112,25 @@ def _in_units(
 
 
 def _shadow_prices(
-    programs: Programs, ended: Ended, problems: Sequence[NonlinearProgram]
+    programs: Programs, ended: Ended, problems: Sequence[Program]
 ) -> list[dict[str, float]]:
     """What each least energy falls by if a limit is widened [J by its unit]."""
     multipliers = programs.split(ended.multipliers.bounded)
     prices = list[dict[str, float]]()
-    for i, (transcription, scalarization) in enumerate(problems):
+    for i, problem in enumerate(problems):
         bounded = {
-            limit.name: multipliers[limit.name][i] / transcription.scale_of(limit.name)
-            for limit in scalarization.limits
+            limit.name: multipliers[limit.name][i] / problem.scale_of(limit.name)
+            for limit in problem.limits
             if limit.name in multipliers
         }
-        of_energy = programs.weights[i, 0] / transcription.energy_scale
+        of_energy = programs.weights[i, 0] / problem.energy_scale
         of_arrival = np.zeros(0)
-        if scalarization.at_rest:
-            of_arrival = ended.multipliers.equality[i] / transcription.arrival_scale
-        tips = transcription.tip_rows[0]
+        if problem.at_rest:
+            of_arrival = ended.multipliers.equality[i] / problem.arrival_scale
+        tips = problem.tip_rows[0]
         prices.append(
             shadow_prices(
-                scalarization,
+                problem,
                 of_energy,
                 bounded,
                 of_arrival,

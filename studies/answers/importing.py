@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics import MoveFunction
-from quietarm.metaheuristics.objective.population import UNUSABLE
-from quietarm.metaheuristics.objective.stated_figures import FIGURES, agrees
+from quietarm.metaheuristics.evaluation.population import UNUSABLE
+from quietarm.metaheuristics.evaluation.stated_figures import agrees
+from quietarm.models import Plant
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
 from quietarm.ocp.checks import whole
+from quietarm.ocp.figures import FIGURES
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.plan import evaluate_coefficients
@@ -107,7 +109,7 @@ def _evaluated(
         plan = evaluate_coefficients(task, rows[row], profile=profile)
         return plan.residual, plan.energy
 
-    return front, _claims(imported.claims, objectives[:, :2], judge)
+    return front, _claims(imported.claims, objectives[:, :2], judge, task.plant)
 
 
 def _checked(
@@ -152,25 +154,28 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
 
 
 def _claims(
-    stated: Array, figures: Array, judge: Callable[[int], tuple[float, float]]
+    stated: Array, figures: Array, judge: Callable[[int], tuple[float, float]], plant: Plant
 ) -> list[str]:
     """How what a file states compares; where fixed steps differ from it, CVODES has the word."""
-    least = np.array([least for _, _, least in FIGURES])
+    objectives = [FIGURES[name] for name in RESIDUAL_AND_ENERGY]
+    least = np.array([figure.agreement for figure in objectives])
     differ = (~np.isnan(stated) & ~agrees(stated, figures, least)).any(axis=1)
     figures = figures.copy()
     for row in np.flatnonzero(differ)[:_JUDGED].tolist():
         figures[row] = judge(row)
     notes = list[str]()
-    for theirs, ours, (figure, unit, least) in zip(stated.T, figures.T, FIGURES):
+    for theirs, ours, objective in zip(stated.T, figures.T, objectives):
+        figure = objective.name
+        unit = objective.unit_on(plant)
         known = ~np.isnan(theirs)
-        wrong = known & ~agrees(theirs, ours, least)
+        wrong = known & ~agrees(theirs, ours, objective.agreement)
         if not known.any():
             continue
         if not wrong.any():
             motions = "its motion" if known.sum() == 1 else f"all {known.sum()} motions"
             notes.append(f"the file's {figure} is right for {motions}")
             continue
-        gaps = (np.abs(theirs - ours) - least) / np.maximum(np.abs(ours), 1e-300)
+        gaps = (np.abs(theirs - ours) - objective.agreement) / np.maximum(np.abs(ours), 1e-300)
         worst = int(np.argmax(np.where(wrong, gaps, -1.0)))
         telling = known & (ours > 100 * REST)
         hint = ""

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 from codecs import BOM_UTF8
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import msgspec
 
-from quietarm.metaheuristics.objective.stated_figures import check_figures, check_plan
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures, check_plan
 from quietarm.ocp import FileFormatError, Front, Plan
 from quietarm.ocp.files import read_bytes
-from quietarm.ocp.saved import keeps_checksum
 
 
 def format_of(path: Path) -> str:
@@ -104,8 +103,3 @@ def _load_plan(path: Path) -> Plan:
     plan = Plan.load(path)
     check_plan(plan, path)
     return plan
-
-
-def without_checksum(paths: Iterable[Path]) -> list[Path]:
-    """Files of answers whose method and effort nothing vouches for; older ones have no checksum."""
-    return [path for path in paths if keeps_checksum(path, "answer") is None]

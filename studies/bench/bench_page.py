@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.objective.population import ACCURACY
-from quietarm.metaheuristics.score import HYPERVOLUME, INDICATORS, Indicator
+from quietarm.metaheuristics.evaluation.population import ACCURACY
+from quietarm.metaheuristics.score import HYPERVOLUME, Indicator, known_indicators
 from quietarm.ocp.front.points import LEVELS
-from quietarm.studies.bench.figures import curves_figure, profiles_figure, ranks_figure
+from quietarm.studies.bench.bench_pictures import curves_figure, profiles_figure, ranks_figure
 from quietarm.studies.bench.results import (
     ENERGIES,
     MISSING,
@@ -90,7 +90,7 @@ def bench_report(
         "label_of": bench_label,
         "accuracy": ACCURACY,
         "noisy": any("noise" in run.front.record.settings for run in results.runs),
-        "indicators": INDICATORS,
+        "indicators": known_indicators(),
         "target": f"{100 * SHOWN_TARGET:g}",
         "moves": len(moves_of(results.problems)),
         "verdicts": {name: verdict_on(results, name) for name in problems},
@@ -107,7 +107,7 @@ def bench_report(
         "kruskal": {name: kruskal_on(results, name) for name in problems},
         "repeated": _repeated(results),
         "copies": [run.label for run in results.copies],
-        "unsealed": results.unsealed,
+        "imported": results.imported,
         "machine": f"{platform.machine()}, {platform.system()}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }
@@ -116,12 +116,12 @@ def bench_report(
 
 def compared_columns() -> list[str]:
     """Columns of the runs that pairs of methods are tested on: every indicator, and the energy."""
-    return [*map(column_of, INDICATORS.values()), _ENERGY]
+    return [*map(column_of, known_indicators().values()), _ENERGY]
 
 
 def _others() -> list[Indicator]:
     """The indicators beside the hypervolume, which ranks methods and has a column of its own."""
-    return [indicator for indicator in INDICATORS.values() if indicator is not HYPERVOLUME]
+    return [indicator for indicator in known_indicators().values() if indicator is not HYPERVOLUME]
 
 
 def _heading(indicator: Indicator) -> str:
@@ -262,7 +262,7 @@ def summary_table(results: Results) -> pd.DataFrame:
     rows = []
     for method, runs in results.table.groupby("method"):
         columns = [
-            *map(column_of, INDICATORS.values()),
+            *map(column_of, known_indicators().values()),
             "missing_between",
             _ENERGY,
             *_COST,

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from quietarm.metaheuristics import PRESETS, PROBLEMS, Job, NamedProblem, problem_of
-from quietarm.metaheuristics.gradient import GRADIENT
-from quietarm.metaheuristics.jobs import POLISH
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp import Front
-from quietarm.ocp.checks import spelling, whole
+from quietarm.ocp.checks import whole
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Setting
 
@@ -21,9 +19,7 @@ ALL = "all"
 
 def spell_method(typed: str) -> str:
     """A method's name, however it was spelt, and what follows: NSGA-II+polish is nsga2+polish."""
-    known = {spelling(name): name for name in (*PRESETS, *GRADIENT)}
-    name, *rest = re.split(r"(?=[+.])", typed.strip(), maxsplit=1)
-    return "".join([known.get(spelling(name), name), *rest])
+    return NamedMethod.of_typed(typed, PRESETS)
 
 
 def problems_of(
@@ -136,7 +132,8 @@ def jobs_of(
     for run_seed in range(seed, seed + runs):
         for problem in problems:
             for name in methods:
-                preset = PRESETS.get(name.partition("+")[0])
+                method = NamedMethod.read(name)
+                preset = PRESETS.get(method.method)
                 if problem.task.limits and preset is not None and not preset.keeps_limits:
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
                     continue
@@ -144,12 +141,12 @@ def jobs_of(
                 if unfit:
                     left_out[f"{unfit}: left out on {problem.name}"] = None
                     continue
-                if name in GRADIENT:
+                if method.is_gradient_job:
                     jobs.append(Job(problem, name, run_seed, None, of_method[name]))
                     if noise:
                         left_out[f"{name} has no noise: its gradient is that of the model"] = None
                     continue
-                if noise and name.endswith(POLISH):
+                if noise and method.polish:
                     left_out[f"{name} is polished by the model's gradient, without noise"] = None
                 of_search: Any = {"noise": noise, "reevaluate": reevaluate}
                 settings_of_it = of_method[name]

@@ -13,12 +13,12 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics import Job, NamedProblem
-from quietarm.metaheuristics.run_files import is_sealed
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
-    INDICATORS,
     Indicator,
     filled,
+    known_indicators,
     objectives,
     scores_on_the_way,
 )
@@ -32,7 +32,7 @@ from quietarm.studies.bench.running_times import (
     running_times,
     write_histories,
 )
-from quietarm.views.report.methods import is_gradient, label_of, unpolished
+from quietarm.views.report.method_rows import label_of
 
 Array = NDArray[np.float64]
 ENERGIES = [f"energy_{1e3 * level:g}mm" for level in LEVELS]
@@ -184,9 +184,9 @@ class Results:
         return [run for run in self.runs if run.imported and run.copies_reference]
 
     @property
-    def unsealed(self) -> int:
-        """How many runs are no bench's by its checksum: imported ones, and files of before."""
-        return sum(run.imported or not is_sealed(run.front) for run in self.runs)
+    def imported(self) -> int:
+        """How many runs are not of this bench."""
+        return sum(run.imported for run in self.runs)
 
     def is_repeated(self, problem: str, method: str) -> bool:
         """Whether a method found the same from every seed: its runs are one, not independent.
@@ -326,8 +326,8 @@ def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
 
 def derivative_free(method: str) -> bool:
     """Whether all of a method's work is candidates simulated without derivatives."""
-    name = method.partition("(")[0]
-    return not is_gradient(method) and unpolished(name) == name
+    named = NamedMethod.read(method)
+    return not (named.by_gradient or named.polish)
 
 
 bench_label = partial(label_of, solver="sqp")
@@ -374,8 +374,10 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
         "residual_window_s": front.task.residual_window,
         "points": len(front.points),
     }
-    for name, indicator in INDICATORS.items():
+    for name, indicator in known_indicators().items():
         column = column_of(indicator)
+        if column in row:
+            raise ValueError(f"{column} is a column already; give the indicator another name")
         for suffix, scores in (("", run.scores), ("_between", run.scores_between)):
             score = lacking(scores[name], indicator)
             row[f"{column}{suffix}"] = told_apart(score) if column == MISSING else score

@@ -115,11 +115,6 @@ class Ranking:
     left_out: tuple[str, ...]
 
     @property
-    def has_power(self) -> bool:
-        """Whether any two mean ranks could differ by the critical difference."""
-        return self.critical < len(self.methods) - 1
-
-    @property
     def best(self) -> tuple[str, ...]:
         """The first method and those not significantly different from it."""
         near = (rank - self.ranks[0] <= self.critical for rank in self.ranks)

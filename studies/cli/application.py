@@ -35,21 +35,8 @@ COMMANDS = {
     "explore": "Change a move by hand, on a page in the browser.",
     "list": "List plants, problems or methods.",
 }
-"""What each command does. `NAME` is the function `NAME` of `commands.NAME`, and `list` is `list_`
-of `commands.list_`."""
-HEIRS = {
-    "floor": "plan --profile free", "lookup": "plan --from moves.zarr",
-    "import": "evaluate --coefficients results.csv", "polish": "front --polish front.json",
-    "study": "bench", "contest": "bench", "robustness": "compare", "versus": "compare --baselines",
-    "animate": "export --output move.gif", "plants": "list plants", "problems": "list problems",
-}  # fmt: skip
-"""What took the place of commands that are gone, for one release."""
-OPTION_HEIRS = {
-    "--robust": "--error", "--csv": "--output NAME.csv", "--figure": "--output NAME.png",
-    "--latex": "--output NAME.tex", "--sample-rate": "quietarm export --rate",
-    "--checkpoint": "quietarm search --from front.json",
-}  # fmt: skip
-"""What took the place of options that are gone, for one release."""
+"""What each command does. `NAME` is the function `NAME` of `commands.NAME_command`, and `list` is
+`list_`."""
 
 
 class LazyGroup(click.Group):
@@ -60,8 +47,6 @@ class LazyGroup(click.Group):
     ) -> tuple[str, click.Command, list[str]]:
         """The name and the command that was asked for, and the other words."""
         name, *rest = args
-        if name in HEIRS:
-            raise ValueError(f"quietarm {name} is gone; give quietarm {HEIRS[name]}")
         if name not in COMMANDS:
             raise ValueError(unknown("command", name, COMMANDS))
         return name, command_of(name), rest
@@ -70,7 +55,7 @@ class LazyGroup(click.Group):
 def command_of(name: str) -> click.Command:
     """A command by its name."""
     function = "list_" if name == "list" else name
-    return getattr(import_module(f"quietarm.studies.cli.commands.{function}"), function)
+    return getattr(import_module(f"quietarm.studies.cli.commands.{name}_command"), function)
 
 
 @click.group(
@@ -141,10 +126,6 @@ def _run(arguments: Sequence[str] | None) -> int:
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return BAD_INPUT
-    except click.NoSuchOption as error:
-        heir = OPTION_HEIRS.get(error.option_name)
-        message = f"{error.option_name} is gone; give {heir}" if heir else error.format_message()
-        return _complain(message, BAD_INPUT)
     except click.ClickException as error:
         return _complain(error.format_message(), BAD_INPUT)
     except ValueError as error:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, suppress
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 from rich.console import Console
 
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
-from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.named_profiles import POLYNOMIAL, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.solvers.choice import SOLVERS
-from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.solver import Option, Solver
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.plants import parse_plant
 from quietarm.studies.cli.quantities import (
@@ -29,9 +30,10 @@ from quietarm.studies.cli.quantities import (
     parse_objectives,
     parse_share_of_work,
     parse_state,
+    parse_usual,
     parse_workers,
 )
-from quietarm.studies.cli.types import INPUT, SETTING, SHARE, TIME, Named, Parsed
+from quietarm.studies.cli.types import INPUT, SETTING, TIME, Named, Parsed
 from quietarm.views.report.progress import count, working
 from quietarm.views.report.saving import STDOUT
 
@@ -43,9 +45,10 @@ def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> c
 
 
 COMMON = (
-    # eager: the plants in it are then known by name
+    # eager: what is in it is then known by name
     option("--plant-file", type=Parsed("file", load_plant_file), is_eager=True,
-           help="Plants of your own: a file in Python, which is run."),
+           help="Your own plants, profiles, energies, searches, indicators, formats or panels: a "
+           "file in Python, which is run."),
     option("--quiet", is_flag=True, help="Show no progress."),
 )  # fmt: skip
 
@@ -53,10 +56,28 @@ COMMON = (
 class Command(click.Command):
     """A command with the options that all have; its function takes what was `Given`."""
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse a line; quantities of a plant file are options already."""
+        for file in _plant_files(args):
+            with suppress(ValueError):  # the option's own reading says what is wrong
+                load_plant_file(file)
+        return super().parse_args(ctx, args)
+
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
         """Its own options and those of all commands."""
-        *params, help_option = super().get_params(ctx)
-        return [*params, *COMMON, help_option]
+        help_option = super().get_params(ctx)[-1]
+        return [*self.own_params, *COMMON, help_option]
+
+    @property
+    def own_params(self) -> list[click.Parameter]:
+        """Its own arguments and options, with limits of quantities of one's own."""
+        params = list(self.params)
+        names = [param.name for param in params]
+        if LIMITS[-1].name in names:
+            last = names.index(LIMITS[-1].name) + 1
+            added = [quantity for quantity in QUANTITIES.values() if quantity.limit not in names]
+            params[last:last] = map(limit_option, added)
+        return params
 
     def invoke(self, ctx: click.Context) -> None:
         """Run it, unless one file is named twice, or its answer would go nowhere."""
@@ -64,6 +85,15 @@ class Command(click.Command):
         _refuse_lost_answer(ctx)
         if self.callback is not None:
             self.callback(Given(ctx))
+
+
+def _plant_files(args: Iterable[str]) -> Iterator[str]:
+    """The files of `--plant-file` on a line."""
+    following = iter(args)
+    for word in following:
+        name, equals, file = word.partition("=")
+        if name == "--plant-file":
+            yield file if equals else next(following, "")
 
 
 def command(*params: click.Parameter) -> Callable[[Callable[[Given], None]], click.Command]:
@@ -108,6 +138,13 @@ def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int
     return count(total, what, progress_console())
 
 
+def limit_option(quantity: Quantity) -> click.Option:
+    """The option of a quantity's limit."""
+    words = f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST."
+    return option(quantity.option, metavar=f"[{quantity.unit}]", help=words)
+
+
+LIMITS = tuple(map(limit_option, QUANTITIES.values()))
 SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
              help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.")  # fmt: skip
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
@@ -139,11 +176,7 @@ TASK = (
     *ENDS,
     option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),
-    *(
-        option(quantity.option, metavar=f"[{quantity.unit}]",
-               help=f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST.")
-        for quantity in QUANTITIES.values()
-    ),
+    *LIMITS,
     option("--torque-speed", metavar="TORQUE@SPEED", help="Torque limit by speed, as points: "
            "1.5Nm@0,0.8Nm@190rpm; of a linear axis 100N@0,40N@500mm/s."),
     option("--residual-window", type=TIME,
@@ -166,13 +199,48 @@ RESIDUAL_LIMIT = option("--residual-limit", metavar="LENGTH", help="Largest tip 
                         "largest deflection, or less]")  # fmt: skip
 SEED = option("--seed", default=0, help="Seed of the random numbers; the first of several.")
 STARTS = option("--starts", default=4, help="Starts of the solver.")
-SOLVER = (
-    option("--solver", type=Named("solver", SOLVERS), default=next(iter(SOLVERS)),
-           help="Sequential quadratic programs (quietarm's own, fast), or IPOPT."),
-    option("--tolerance", type=SHARE, default=f"{Solver.tolerance:g}",
-           help="Share of the least energy that the solver may leave, of every solve; limits and "
-           "rest on arrival are kept as exactly as ever."),
-)  # fmt: skip
+
+
+def solver_options(solvers: Mapping[str, type[Solver]] = SOLVERS) -> tuple[click.Option, ...]:
+    """--solver, and an option for each that one of them has: their fields say all of it."""
+    entries: dict[str, dict[str, Option]] = {}
+    for name, kind in solvers.items():
+        for entry in kind.stated_options():
+            entries.setdefault(entry.name, {})[name] = entry
+    return (
+        option("--solver", type=Named("solver", solvers), default=next(iter(solvers)),
+               help="Sequential quadratic programs (quietarm's own, fast), or IPOPT."),
+        *(_solver_option(of_kinds, len(of_kinds) == len(solvers)) for of_kinds in entries.values()),
+    )  # fmt: skip
+
+
+def _solver_option(of_kinds: Mapping[str, Option], all_have_it: bool) -> click.Option:
+    """An option that some kinds of solver have; None where it was not typed."""
+    entry = next(iter(of_kinds.values()))
+    words = entry.name.replace("_", "-")
+    defaults = {name: _default_words(one.default) for name, one in of_kinds.items()}
+    shown = ", ".join(f"{text} of {name}" for name, text in defaults.items())
+    if len({*defaults.values()}) == 1:
+        shown = next(iter(defaults.values()))
+    whose = "" if all_have_it else f"Of {' and '.join(of_kinds)}: "
+    flag = f"--{words}/--no-{words}" if entry.kind is bool else f"--{words}"
+    help_text = f"{whose}{entry.meaning} [default: {shown}]"
+    return option(flag, type=_type_of(entry), default=None, help=help_text)
+
+
+def _type_of(entry: Option) -> Any:
+    """How an option of a solver is read: a number in its unit, or one of several words."""
+    if entry.kind is float:
+        return Parsed(entry.word, partial(parse_usual, entry.unit, f"a {entry.word}"))
+    words = get_args(entry.kind)
+    return Named(entry.name.replace("_", " "), words) if words else entry.kind
+
+
+def _default_words(default: object) -> str:
+    return f"{default:g}" if isinstance(default, float) else str(default)
+
+
+SOLVER = solver_options()
 """What describes a solver: a command with these has `Given.read_solver`."""
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
@@ -221,7 +289,10 @@ def profile_options(*more: str, words: str = "") -> tuple[click.Option, click.Op
 
 
 def method_option(
-    methods: Iterable[str], elsewhere: Mapping[str, str], default: str, words: str
+    methods: Iterable[str] | Callable[[], Iterable[str]],
+    elsewhere: Mapping[str, str],
+    default: str,
+    words: str,
 ) -> click.Option:
     """--method; an error says of methods `elsewhere` which command has them."""
     return option("--method", type=Named("method", methods, elsewhere), default=default, help=words)

@@ -5,20 +5,21 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 from rich.console import Console
 
 from quietarm.interrupts import note_interrupts
-from quietarm.ocp import Plan, QuietarmError
+from quietarm.ocp import QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import busy, option
 from quietarm.studies.cli.types import Parsed
+from quietarm.views.formats.export_format import SEVERAL, ExportFormat, format_of, formats_of
+from quietarm.views.formats.formats import write_in
 from quietarm.views.report.saving import STDOUT, SUFFIXES, File, drawing
 from quietarm.views.report.terminal import show_all
 
@@ -31,16 +32,26 @@ PICTURE = SUFFIXES[0]
 PAGE = ".html"
 FOLDER = ""
 DATASET = ".zarr"
-TRAJECTORY = ".yaml"
 
 
-def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.Option:
+class Written(NamedTuple):
+    """The files that were written, and what is said of them."""
+
+    paths: Sequence[Path]
+    notes: Sequence[str] = ()
+
+
+_NAMES = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
+
+
+def output_option(
+    kinds: Mapping[str, str], *, formats: Sequence[str] = (), required: bool = False
+) -> click.Option:
     """--output, which may be repeated, and what the files of each ending hold.
 
-    A command whose answers go to standard output as well has the ending .json.
+    Besides these it takes every format of plans, or of fronts, as `formats` has it. A command whose
+    answers go to standard output as well has the ending .json.
     """
-    names = {PICTURE: ", ".join(SUFFIXES), FOLDER: "a folder", DATASET: "a folder NAME.zarr"}
-    listed = "; ".join(f"{names.get(kind, kind)} for {words}" for kind, words in kinds.items())
 
     def check(text: str) -> Path:
         path = Path(text)
@@ -50,13 +61,45 @@ def output_option(kinds: Mapping[str, str], *, required: bool = False) -> click.
                 raise ValueError(f"this cannot go to standard output; give a name, or ./{text}")
             return path
         if kind not in kinds:
-            raise ValueError(f"{text} is none of the files that it writes; give {listed}")
+            _check_format(path, kinds, formats)
         return check_folder(path) if kind in (FOLDER, DATASET) else check_writable(path)
 
     return option(
         "--output", "-o", type=Parsed("file", check), multiple=True, required=required,
-        help=f"File to write, by its ending: {listed}.",
+        help=f"File to write, by its ending: {_listed(kinds, formats)}.",
     )  # fmt: skip
+
+
+def _check_format(path: Path, kinds: Mapping[str, str], formats: Sequence[str]) -> None:
+    """Refuse a file that is of no format of such answers, or whose name that has no use for."""
+    for form in formats_of(*formats):
+        if path.suffix.lower() in form.endings:
+            return form.check_path(path)
+        if path.suffix.lower() in form.beside:
+            format_of(path)  # which says what it stands beside
+    listed = _listed(kinds, formats)
+    raise ValueError(f"{path} is none of the files that it writes; give {listed}")
+
+
+def _listed(kinds: Mapping[str, str], formats: Sequence[str]) -> str:
+    """What a command writes: its own kinds of files, and the formats."""
+    words = [f"{_NAMES.get(kind, kind)} for {meaning}" for kind, meaning in kinds.items()]
+    by_meaning = dict[str, list[str]]()
+    for form in formats_of(*formats):
+        if form.endings[0] not in kinds:
+            by_meaning.setdefault(form.meaning, []).append(form.endings[0])
+    words += [f"{', '.join(endings)} for {meaning}" for meaning, endings in by_meaning.items()]
+    return "; ".join(words)
+
+
+def refuse_formats(output: Sequence[Path], but: Sequence[str], answers: str) -> None:
+    """Refuse files of formats that do not take what is found after all, a plan or a front."""
+    for path in output:
+        written = ending_of(path) in but
+        if not written and all(path.suffix.lower() not in f.endings for f in formats_of(answers)):
+            listed = ", ".join(form.endings[0] for form in formats_of(answers))
+            own = ", ".join(_NAMES.get(kind, kind) for kind in but)
+            raise ValueError(f"{path} cannot hold a {answers}; give {own}, {listed}")
 
 
 REPORT_OPTION = output_option(
@@ -79,7 +122,7 @@ def ending_of(path: Path) -> str:
     """The ending that says what goes into a file; that of JSON for standard output."""
     if path == STDOUT:
         return ".json"
-    same = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": ".html", ".txt": ".csv"}
+    same = {**dict.fromkeys(SUFFIXES, PICTURE), ".htm": PAGE, ".txt": ".csv"}
     suffix = path.suffix.lower()
     return same.get(suffix, suffix)
 
@@ -90,36 +133,46 @@ def answer_files(
     answer: Any = None,
     beside: Sequence[Any] = (),
 ) -> list[File]:
-    """An answer as JSON, as a table where it has one, and as a picture, as the endings say.
+    """An answer as JSON, as a table where it has one, as a picture, or in a format, by the ending.
 
-    And as a page, on which further answers lie beside it.
+    In a format that takes several, further answers lie beside it.
     """
     saves = {".json": "save", ".csv": "save_csv"}
-    ways = {ending: getattr(answer, save, None) for ending, save in saves.items()}
-    ways[TRAJECTORY] = partial(_save_trajectory, answer)
-    ways[PAGE] = partial(_save_page, [answer, *beside])
-    return [(path, ways.get(ending_of(path)) or drawing(draw)) for path in output]
+    files = list[File]()
+    for path in output:
+        ending = ending_of(path)
+        save = getattr(answer, saves.get(ending, ""), None)
+        if save is None:
+            drawn = answer is None or ending in (PICTURE, *saves)
+            save = drawing(draw) if drawn else _exporting(answer, beside)
+        files.append((path, save))
+    return files
+
+
+def _exporting(answer: Any, beside: Sequence[Any]) -> Callable[[Path], Written]:
+    """What writes an answer in the format of a file's ending."""
+
+    def write(path: Path) -> Written:
+        form = format_of(path)
+        together = [answer, *(beside if SEVERAL in form.takes else ())]
+        return Written(*write_in(form, together, path, settings_of_studies(form)))
+
+    return write
+
+
+def settings_of_studies(form: ExportFormat) -> dict[str, Any]:
+    """What studies know and a page shows: the points that the paper states."""
+    if all(setting.name != "known_points" for setting in form.settings):
+        return {}
+    from quietarm.studies.reproduce.paper import paper_points
+
+    return {"known_points": paper_points}
 
 
 def check_page(output: Sequence[Path], objectives: Sequence[str]) -> None:
     """Refuse a page of a front that has peaks among its objectives, before it is found."""
     if PAGE in map(ending_of, output):
         refuse_peaks("the front", objectives)
-
-
-def _save_trajectory(plan: Plan, path: Path) -> None:
-    """As a controller of ROS 2 reads it."""
-    from quietarm.views.formats.formats import export_plan
-
-    export_plan(plan, path)
-
-
-def _save_page(answers: Sequence[Any], path: Path) -> None:
-    """To drag along a front, or to see a plan move."""
-    from quietarm.studies.reproduce.paper import paper_points
-    from quietarm.views.page.trade_off import trade_off
-
-    trade_off(answers, known_points=paper_points).save(path)
 
 
 def finish(
@@ -133,24 +186,28 @@ def finish(
     files are there. Words go to standard error where standard output is one of the files.
     """
     written = list[str]()
+    notes = list[str]()
     failures = list[Exception]()
     with note_interrupts() as came, busy("writing"):
         for path, write in files:
             try:
-                _save(path, write)
+                made = _save(path, write)
             except OSError as error:  # the system's own may leave the name out
                 place = Path("standard output") if path == STDOUT else path
                 failures.append(unwritable(place, error))
             except Exception as error:  # of any kind: the next file may be saved all the same
                 failures.append(error)
             else:
-                written += [] if path == STDOUT else [str(path)]
+                if not isinstance(made, Written):
+                    made = Written([] if path == STDOUT else [path])
+                notes += [f"{path}: {note}" for note in made.notes]
+                written += map(str, made.paths)
     if came and trouble is None:
         words = f"interrupted; wrote {', '.join(written) or 'nothing'}"
         trouble = InterruptedCommandError(words, came[0])
     error = _error_of_all([*([trouble] if trouble else []), *failures])
     console = Console(stderr=STDOUT in dict(files))
-    show_all(console, *shown, *(f"wrote {name}" for name in written))
+    show_all(console, *shown, *notes, *(f"wrote {name}" for name in written))
     if error is not None:
         raise error
 
@@ -163,11 +220,11 @@ def _error_of_all(errors: Sequence[Exception]) -> Exception | None:
     return ValueError("; ".join(map(str, errors))) if errors else None
 
 
-def _save(path: Path, write: Callable[[Path], object]) -> None:
+def _save(path: Path, write: Callable[[Path], object]) -> object:
     if path != STDOUT:
-        write(path)
-        return
+        return write(path)
     with tempfile.TemporaryDirectory(prefix="quietarm-") as folder:
         whole = Path(folder) / "output"
         write(whole)
         sys.stdout.write(whole.read_text(encoding="utf-8"))
+    return None

@@ -12,7 +12,7 @@ from quietarm.machine.identify import Identified
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import unknown
-from quietarm.studies.cli.quantities import MEASURED, once
+from quietarm.studies.cli.quantities import MEASURED, once, parse_parameters
 from quietarm.views.report.terminal import print_lines
 from quietarm.views.report.words import note_lines
 
@@ -43,18 +43,22 @@ def parse_plant(name: str) -> Kind:
 
 def choose_kind(named: Kind | None, of_file: Mapping[str, type[Plant]] | None) -> Kind:
     """What PLANT names, or else the only plant of a plant file."""
-    if isinstance(named, Identified | Robot) or (named and of_file is None):
+    if named is not None:
         return named
     if not of_file:
         raise ValueError(
             "missing argument PLANT; give one, as single-link, or a file by --plant-file"
         )
-    defined = f"the plant file defines {' and '.join(of_file)}"
-    if named is None and len(of_file) > 1:
-        raise ValueError(f"{defined}; name one as PLANT")
-    if named and named not in of_file.values():
-        raise ValueError(f"{defined}, not {named.name}; leave {named.name} or --plant-file out")
-    return named or next(iter(of_file.values()))
+    if len(of_file) > 1:
+        raise ValueError(f"the plant file defines {' and '.join(of_file)}; name one as PLANT")
+    return next(iter(of_file.values()))
+
+
+def parameters_of(kind: Kind, settings: Iterable[tuple[str, str]]) -> dict[str, tuple[float, ...]]:
+    """The parameters that were set, each with its value, or several."""
+    if isinstance(kind, Robot):
+        raise ValueError(ROBOT_IS_NO_PLANT)
+    return parse_parameters(kind.plant if isinstance(kind, Identified) else kind, settings)
 
 
 def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:

@@ -17,17 +17,20 @@ from typing import Any, TypeVar
 import numpy as np
 
 from quietarm.machine.tables.column_units import OF_OPTIONS, normal
-from quietarm.metaheuristics.objective.noise import noise_share
+from quietarm.metaheuristics.evaluation.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY, joint_label, joint_unit
+from quietarm.models.dimensions import EFFORT, SPEED
+from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY
+from quietarm.models.plant import DAMPING, OTHER
 from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.ocp.objectives import checked_objectives
-from quietarm.studies.sweep.move_grid import MOST_VALUES, OF_MOVES
+from quietarm.ocp.task import OF_MOVES
+from quietarm.studies.sweep.move_grid import MOST_VALUES
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -68,9 +71,9 @@ def parse_share(text: str, name: str) -> float:
     return value
 
 
-def parse_parameter(text: str, unit: str, name: str) -> float:
-    """Read a plant's parameter; dampings are shares."""
-    if name.startswith(("zeta", "damping")):
+def parse_parameter(text: str, unit: str, name: str, kind: str = OTHER) -> float:
+    """Read a plant's parameter; damping ratios are shares."""
+    if kind == DAMPING:
         return parse_share(text, name)
     return parse_quantity(text, unit, f"a value of {name}")
 
@@ -80,6 +83,7 @@ def parse_parameters(
 ) -> dict[str, tuple[float, ...]]:
     """Read the values that a plant's parameters are set to, several for an axis of a sweep."""
     units = plant.units()
+    kinds = plant.parameter_kinds()
     meanings = {entry.name: entry.metadata.get("meaning", "") for entry in fields(plant)}
     values: dict[str, tuple[float, ...]] = {}
     for name, text in once(pairs, "--set ").items():
@@ -87,7 +91,9 @@ def parse_parameters(
             symbols = [symbol for symbol, meaning in meanings.items() if name in meaning]
             meant = f"; the {name} is {' or '.join(symbols)}" if symbols else ""
             raise ValueError(has_no(plant.name, "parameter", name, meanings) + meant)
-        values[name] = parse_values(text, partial(parse_parameter, unit=units[name], name=name))
+        values[name] = parse_values(
+            text, partial(parse_parameter, unit=units[name], name=name, kind=kinds[name])
+        )
     return values
 
 
@@ -134,8 +140,8 @@ def parse_of_plant(
             "give a limit of each by its name, as x=500mm/s,elbow=90deg/s"
         )
     article = "an" if limited.name == "acceleration" else "a"
-    what = f"{article} {joint_label(limited.name, joint)}"
-    values = [parse_usual(limited.unit, what, side) for side in sides]
+    what = f"{article} {limited.words}"
+    values = [parse_usual(str(limited.unit), what, side) for side in sides]
     if len(values) > 2:
         raise ValueError(f"{text!r} is no limit; give one number, or one for each side as -30:40")
     if len({is_number(side) for side in sides}) > 1:
@@ -219,8 +225,7 @@ _state = _two(
 def _of_drive(joint: str, otherwise: str) -> Callable[[str], tuple[float, float]]:
     """What reads the torque, or the force, that a drive gives at a speed."""
     torque, speed = (
-        partial(parse_quantity, unit=joint_unit(unit, joint), what="one")
-        for unit in ("N m", "rad/s")
+        partial(parse_quantity, unit=unit.of(joint), what="one") for unit in (EFFORT, SPEED)
     )
     return _two("@", torque, speed, otherwise)
 

@@ -1,38 +1,26 @@
-"""A robot as the plant of a command: its path, and the limits of its joints."""
+"""The path of a robot, as a command's line has it."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
-from quietarm.models.robot.cartesian import kinematics_of, off_straight
-from quietarm.models.robot.urdf import PRISMATIC
+from quietarm.models.robot.path.straight_line import off_straight
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.models.units import parse_quantity
-from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.checks import listed
-from quietarm.ocp.limits import QUANTITIES
-from quietarm.studies.cli.quantities import once
 from quietarm.views.report.words import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from quietarm.studies.cli.given import Given
 
 LINE_NAMES = ("line_to", "line_by", "link")
 """Options of a straight line in space."""
 OF_ROBOT = "is for a robot, whose file is PLANT, as ur5.yaml"
-_OTHERS = ("residual_window", "initial", "final", "energy")
 
 
-def read_robot_task(
-    given: Given, robot: Robot, duration: float, multiples: Mapping[str, Sequence[float]]
-) -> PointToPoint:
-    """The task of a robot along the path that was typed, within its own limits and those typed.
-
-    Of several multiples of its payload, or stiffness, the least counts: the others are an axis.
-    """
+def needed_path(given: Given, robot: Robot) -> GeometricPath:
+    """The path that was typed; ValueError where none was."""
     path = path_of(given, robot)
     if path is None:
         names = listed(robot.joints)
@@ -40,24 +28,7 @@ def read_robot_task(
             f"the robot has no path; give --start and --target, a position of each of {names}, or "
             "--path waypoints.csv, or --start and --line-by"
         )
-    plant = replace(robot.along(path), **{name: min(values) for name, values in multiples.items()})
-    limits: dict[str, Any] = {
-        QUANTITIES[name].limit: dict(bounds) for name, bounds in robot.limits.items() if bounds
-    }
-    for quantity in QUANTITIES.values():
-        typed = given.read_of_plant(quantity.limit, plant)
-        if typed is not None:
-            limits[quantity.limit] = typed
-    limits["torque_speed"] = given.read_of_plant("torque_speed", plant)
-    ranges = once(given.errors, "--error ")
-    return PointToPoint(
-        plant,
-        target=1.0,
-        duration=duration,
-        **limits,
-        **given.pick(*_OTHERS),
-        uncertainty=Uncertainty(ranges) if ranges else None,
-    )
+    return path
 
 
 def path_of(given: Given, robot: Robot) -> GeometricPath | None:
@@ -99,7 +70,7 @@ def line_note(given: Given, plant: RobotOnPath) -> str | None:
     """How straight the link goes for which a line was typed."""
     if given.line_to is None and given.line_by is None:
         return None
-    kinematics = kinematics_of(plant.robot, given.link)
+    kinematics = plant.robot.kinematics(given.link)
     off = off_straight(kinematics, plant.path)
     return f"line: {kinematics.link} goes straight within {max(1e3 * off, 1e-9):.1g} mm"
 

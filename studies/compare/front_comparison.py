@@ -12,7 +12,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.run_files import SEALS
+from quietarm.metaheuristics.run_files import BESIDE_SETTINGS
 from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
@@ -21,14 +21,14 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.saved import plain
 from quietarm.studies.compare.staircase import best_of, evenly_spaced
-from quietarm.views.report.methods import is_gradient, label_of
+from quietarm.views.report.method_rows import is_gradient, label_of
 from quietarm.views.report.words import objective_words
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class ScoredFront:
     """One front and its figures in a comparison.
 
     Energies [J] are the least within each level. A front of few points would lose by its steps, so
@@ -47,14 +47,14 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class RunsOfMethod:
     """The runs of one method with one set of settings, one for each seed.
 
     `best`, `median` and `worst` are attainment surfaces: what one, half, and all of them reach.
     """
 
     label: str
-    runs: tuple[Measured, ...]
+    runs: tuple[ScoredFront, ...]
     best: Array
     median: Array
     worst: Array
@@ -71,7 +71,7 @@ class Group:
         return stairs, within(self.best, stairs), within(self.worst, stairs)
 
     def spread(self, figure: str, entry: int | str | None = None) -> Spread:
-        """Quartiles over the runs of a figure of `Measured`, as `front.record.seconds`.
+        """Quartiles over the runs of a figure of `ScoredFront`, as `front.record.seconds`.
 
         Of `energies` and the like the entry of a level, of `scores` that of an indicator.
         """
@@ -88,7 +88,7 @@ class Comparison:
     ----------
     task : PointToPoint
         The move.
-    groups : tuple of Group
+    groups : tuple of RunsOfMethod
         Methods, in the order in which they were given.
     reference : str
         What IGD+ and additive epsilon are measured against.
@@ -116,7 +116,7 @@ class Comparison:
     """
 
     task: PointToPoint
-    groups: tuple[Group, ...]
+    groups: tuple[RunsOfMethod, ...]
     reference: str
     objectives: tuple[str, ...]
     corner: tuple[float, ...]
@@ -128,7 +128,7 @@ class Comparison:
     floor: float | None = None
 
     @property
-    def runs(self) -> tuple[Measured, ...]:
+    def runs(self) -> tuple[ScoredFront, ...]:
         """The runs of all groups."""
         return tuple(run for group in self.groups for run in group.runs)
 
@@ -199,7 +199,7 @@ def compare_fronts(
     clouds = map(_Cloud, names, fronts, points, between)
     measured = [_measured(cloud, scale, levels, best) for cloud in clouds]
     groups = [
-        Group(
+        RunsOfMethod(
             label,
             tuple(measured[i] for i in members),
             *_surfaces([_curve(points[i]) for i in members]),
@@ -243,11 +243,11 @@ class _Cloud(NamedTuple):
     between: Array
 
 
-def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array) -> Measured:
+def _measured(cloud: _Cloud, scale: Scale, levels: Sequence[float], best: Array) -> ScoredFront:
     """A front with its figures."""
     energies = within(cloud.points, levels)
     energies_between = within(cloud.between, levels)
-    return Measured(
+    return ScoredFront(
         name=cloud.name,
         front=cloud.front,
         between=best_of([_curve(cloud.between)]),
@@ -322,7 +322,7 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 def _settings(front: Front) -> dict[str, object]:
     profile = plain(front.profile)
     settings = {"bound": front.record.bound, **front.record.settings}
-    for name in SEALS:  # of a bench's run, and no setting of its method
+    for name in BESIDE_SETTINGS:  # of a bench's run, and no setting of its method
         settings.pop(name, None)
     return {**settings, "profile": profile.pop("name"), **profile}
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from pathlib import Path
 
 import pandas as pd
 
-from quietarm.metaheuristics.score import BETWEEN, INDICATORS
+from quietarm.metaheuristics.score import BETWEEN, known_indicators
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.ocp.objectives import objectives_on
 from quietarm.studies.compare.front_comparison import (
     Comparison,
-    Group,
+    RunsOfMethod,
     compare_fronts,
     differ_in_window_alone,
 )
@@ -85,7 +84,7 @@ def methods_table(comparison: Comparison) -> pd.DataFrame:
     return pd.DataFrame([_row(comparison, group) for group in comparison.groups])
 
 
-def _row(comparison: Comparison, group: Group) -> dict[str, object]:
+def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
     tip_unit = comparison.task.plant.tip_unit
     energies = {
         f"F2 [J] within {tip_words(level, tip_unit)}": spread_words(
@@ -99,7 +98,7 @@ def _row(comparison: Comparison, group: Group) -> dict[str, object]:
         indicator.label: None
         if hidden
         else spread_words(group.spread("scores", name), indicator.form)
-        for name, indicator in INDICATORS.items()
+        for name, indicator in known_indicators().items()
     }
     front = group.runs[0].front
     return {
@@ -140,7 +139,9 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                 "points": len(front.points),
                 "residual_window_s": front.task.residual_window,
             }
-            for name in INDICATORS:
+            for name in known_indicators():
+                if name in row:
+                    raise ValueError(f"{name} is a column already; give the indicator another name")
                 row |= {name: run.scores[name], f"{name}_found": run.scores_found[name]}
             for i, level in enumerate(comparison.levels):
                 at = f"at_{scale * level:g}{shown}"
@@ -158,12 +159,8 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
 def fronts_report(
     comparisons: Sequence[Comparison],
     known: Sequence[Sequence[KnownPoint]],
-    unsealed: Sequence[Path] = (),
 ) -> Report:
-    """Compared fronts of one task or several, with known points of each for its picture.
-
-    Of `unsealed` files it says that nothing vouches for what they say of their effort.
-    """
+    """Compared fronts of one task or several, with known points of each for its picture."""
     names = (
         ["fronts.png"]
         if len(comparisons) == 1
@@ -181,8 +178,7 @@ def fronts_report(
             "residual_place": residual_place,
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
-            "unsealed": unsealed,
-            "indicators": INDICATORS,
+            "indicators": known_indicators(),
             "several": any(
                 len(group.runs) > 1 for comparison in comparisons for group in comparison.groups
             ),

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from quietarm.ocp import (
     Candidate,
+    Figures,
     Floor,
-    Motion,
     Plan,
     PointToPoint,
     Robustness,
@@ -18,7 +19,6 @@ from quietarm.ocp import (
     task_difference,
 )
 from quietarm.ocp.checks import takes
-from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
 from quietarm.views.pictures.meaning import meaning_of
@@ -35,7 +35,7 @@ class JudgedMotion:
     ----------
     name : str
         What tables call it.
-    motion : Motion or None
+    motion : Figures or None
         Residual, energy and peaks on the nominal plant.
     window : float or None
         Time after arrival in which residuals are measured [s].
@@ -55,7 +55,7 @@ class JudgedMotion:
     """
 
     name: str
-    motion: Motion | None = None
+    motion: Figures | None = None
     window: float | None = None
     worst: Worst | None = None
     exceeded: tuple[str, ...] = ()
@@ -118,9 +118,8 @@ def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
 
 
 def _bare(task: PointToPoint) -> PointToPoint:
-    limits = [quantity.limit for quantity in QUANTITIES.values()]
-    without = dict.fromkeys([*limits, "torque_speed", "residual_window"])
-    return replace(task.certain, **without)  # pyright: ignore[reportArgumentType]
+    default: Any = None
+    return replace(task.certain, bounds={}, torque_speed=None, residual_window=default)
 
 
 def merged_ranges(tasks: Iterable[PointToPoint]) -> dict[str, float]:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import pandas as pd
 
-from quietarm.models.joint_motion import ROTARY, joint_label, joint_unit
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes
+from quietarm.ocp.figures import figures_in
+from quietarm.ocp.limits import COMPARISON
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies.compare.baselines import TOPPRA, baseline, choose_baselines
 from quietarm.studies.compare.judged_motions import (
@@ -101,28 +103,13 @@ def motions_table(
     motions: Sequence[JudgedMotion], joint: str = ROTARY, tip_unit: str = "m"
 ) -> pd.DataFrame:
     """A row for each motion with all its figures; what is known of none is left out."""
-    rows = [{"motion": motion.name, **dict(_cells(motion, tip_unit))} for motion in motions]
-    table = pd.DataFrame(rows).dropna(axis=1, how="all")
-    return table.rename(columns=_of_kind(joint))
+    rows = [{"motion": motion.name, **dict(_cells(motion, joint, tip_unit))} for motion in motions]
+    return pd.DataFrame(rows).dropna(axis=1, how="all")
 
 
-def _of_kind(joint: str) -> dict[str, str]:
-    """Columns of a rotary joint's peaks, and what they are called of a kind of joint."""
-    return {
-        column: f"{joint_label(name, joint)} [{joint_unit(unit, joint)}]"
-        for column, (name, unit) in _PEAKS.items()
-    }
-
-
-_PEAK_TORQUE = "peak torque [N m]"
-_PEAK_ACCELERATION = "peak acceleration [rad/s^2]"
-_PEAKS = {
-    _PEAK_TORQUE: ("peak torque", "N m"),
-    _PEAK_ACCELERATION: ("peak acceleration", "rad/s^2"),
-}
-
-
-def _cells(judged: JudgedMotion, tip_unit: str) -> Iterator[tuple[str, float | str | None]]:
+def _cells(
+    judged: JudgedMotion, joint: str, tip_unit: str
+) -> Iterator[tuple[str, float | str | None]]:
     motion = judged.motion
     yield "parameters", judged.parameters
     if motion is None:
@@ -142,8 +129,10 @@ def _cells(judged: JudgedMotion, tip_unit: str) -> Iterator[tuple[str, float | s
             ends = sweep.insensitivity
             words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
             yield f"{sweep.name} within {100 * TOLERATED:g} %", words
-    yield _PEAK_TORQUE, motion.peak_torque
-    yield _PEAK_ACCELERATION, motion.peak_acceleration
+    for figure in figures_in(COMPARISON):
+        if figure.name not in RESIDUAL_AND_ENERGY:
+            unit = figure.unit.of(joint, tip_unit)
+            yield f"{figure.label.of(joint)} [{unit or '-'}]", motion.get(figure.name)
     yield "exceeds", ", ".join(judged.exceeded) or None
     yield "time [s]", judged.seconds
 
@@ -178,13 +167,8 @@ def remarks(motions: Sequence[JudgedMotion], unit: str = "rad") -> list[str]:
     ]
 
 
-def plans_report(
-    task: PointToPoint, motions: Sequence[JudgedMotion], unsealed: Sequence[Path] = ()
-) -> Report:
-    """Motions as a table, what to know of them, and a picture.
-
-    Of `unsealed` files it says that nothing vouches for the time that they state.
-    """
+def plans_report(task: PointToPoint, motions: Sequence[JudgedMotion]) -> Report:
+    """Motions as a table, what to know of them, and a picture."""
     joint = task.plant.joint
     table = motions_table(motions, joint, task.plant.tip_unit)
     robust = next((motion.robustness for motion in motions if motion.robustness), None)
@@ -194,7 +178,6 @@ def plans_report(
         {
             "title": title_of(task),
             "shown": shown(table),
-            "unsealed": unsealed,
             "remarks": [*remarks(motions, unit_of_way(task.plant)), *note_lines(task.plant)],
             "errors": list(ranges),
             "window": window_words(

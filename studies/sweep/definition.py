@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import product
 from typing import Any, NamedTuple
@@ -11,12 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from quietarm.ocp import Solver, SolveStatus, Sqp
-from quietarm.ocp.checks import not_negative, positive
+from quietarm.ocp.checks import listed, not_negative, positive, quoted
 from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of
-from quietarm.ocp.planning.setup import Setup
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import Setting, coefficient_bound
 from quietarm.ocp.robustness import OF_MODES
-from quietarm.ocp.solvers.choice import stated_solver
+from quietarm.ocp.solvers.choice import SOLVERS, stated_solver
+from quietarm.ocp.solvers.solver import NAME
 from quietarm.studies.sweep.move_grid import MoveGrid
 
 STATUS = "status"
@@ -48,12 +49,15 @@ class PlanSettings:
         Largest absolute coefficient.
     starts : int
         1 where cells start from their neighbours; datasets of before may have more.
-    solver : str
-        What solves, by its name.
-    solver_tolerance, solver_iterations : float, int
-        Its options.
+    solved_by : mapping of str to str, bool, int, float or None
+        What solves, with its options that are not the default, as a record states them.
     seed, steps, guess, log
         Of datasets of before, which state them.
+
+    Raises
+    ------
+    ValueError
+        When a number is out of range, no solver is stated, or an option that it does not have.
     """
 
     residual_limit: float = 0.0
@@ -62,24 +66,39 @@ class PlanSettings:
     seed: int = 0
     steps: int | None = None
     guess: tuple[float, ...] | None = None
-    solver: str = Sqp.name
     log: bool = False
-    solver_tolerance: float = Sqp.tolerance
-    solver_iterations: int = Sqp.iterations
+    solved_by: Mapping[str, Setting] = field(default_factory=lambda: Sqp().stated, hash=False)
+
+    def __post_init__(self) -> None:
+        _ = self.solver  # of what is stated
+
+    @classmethod
+    def of_saved(cls, settings: Any) -> Any:
+        """Settings as they are today: datasets of before have the solver's among the others."""
+        if not isinstance(settings, dict) or "solved_by" in settings:
+            return settings
+        solver = {name: entry for name, entry in settings.items() if name.startswith(NAME)}
+        others = {name: entry for name, entry in settings.items() if name not in solver}
+        stated = stated_solver(solver)
+        return others | {"solved_by": stated.stated if stated else solver}
 
     @classmethod
     def of(cls, residual_limit: float | None, bound: float | None, solver: Solver) -> PlanSettings:
         """From neighbours, by a solver; ValueError where a number is out of range."""
         if residual_limit is None:
             residual_limit = 0.0
-        of_solver: dict[str, Any] = solver.stated
         limit = not_negative("residual limit", residual_limit, "m")
-        return cls(limit, Setup(solver, bound).bound, **of_solver)
+        bound = None if bound is None else coefficient_bound(bound)
+        return cls(limit, bound, solved_by=solver.stated)
 
-    @property
-    def solves(self) -> Solver:
-        """What solves."""
-        return stated_solver(vars(self)) or Sqp()
+    @cached_property
+    def solver(self) -> Solver:
+        """What solves, with all of its options."""
+        solver = stated_solver(self.solved_by)
+        if solver is None:
+            known = listed(SOLVERS)
+            raise ValueError(f"solver is {quoted(self.solved_by.get(NAME))}; give one of {known}")
+        return solver
 
     @property
     def from_neighbours(self) -> bool:
@@ -115,6 +134,13 @@ class Definition:
     settings: PlanSettings
     front: int = 0
     margin: float = 0.0
+
+    @classmethod
+    def of_saved(cls, definition: Any) -> Any:
+        """A definition as it is today."""
+        if not isinstance(definition, dict) or "settings" not in definition:
+            return definition
+        return definition | {"settings": PlanSettings.of_saved(definition["settings"])}
 
     def __post_init__(self) -> None:
         most = 0.5
@@ -178,9 +204,10 @@ class Definition:
             "iterations": "1",
             "cold_excess": "1",
         }
-        units |= {entry.peak: entry.unit for entry in quantities_of(task.plant.joint, tip).values()}
+        quantities = quantities_of(task.plant.joint, tip).values()
+        units |= {quantity.peak: str(quantity.unit) for quantity in quantities}
         units |= {
-            f"price_{entry.name}": f"J/({entry.quantity.unit or '1'})" for entry in task.limits
+            f"price_{entry.name}": f"J/({str(entry.quantity.unit) or '1'})" for entry in task.limits
         }
         for name in OF_MODES:
             units |= {f"energy_by_{name}": "J", f"residual_by_{name}": tip}
@@ -215,5 +242,5 @@ class Definition:
     def _entries(self) -> dict[str, Any]:
         of = self, self.settings, self.grid.task
         entries = {entry.name: getattr(part, entry.name) for part in of for entry in fields(part)}
-        del entries["grid"], entries["settings"]
-        return entries | {axis.name: axis for axis in self.grid.axes}
+        del entries["grid"], entries["settings"], entries["solved_by"]
+        return entries | self.settings.solver.stated | {axis.name: axis for axis in self.grid.axes}

@@ -94,7 +94,7 @@ def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], cold: b
         bound=settings.bound,
         starts=max(settings.starts, _COLD_STARTS),
         neighbours=not cold,
-        solver=settings.solves,
+        solver=settings.solver,
     )
     for k, status in enumerate(moves.status):
         row: dict[str, Any] = {STATUS: STATES.index(status.value)}
@@ -119,7 +119,7 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
                 bound=settings.bound,
                 starts=max(settings.starts, _COLD_STARTS) if cold else 1,
                 guess=None if cold else guess,
-                solver=settings.solves,
+                solver=settings.solver,
             )
         except QuietarmError as error:
             infeasible = isinstance(error, InfeasibleTaskError)
@@ -150,7 +150,7 @@ def _front_of(definition: Definition, task: PointToPoint) -> dict[str, Any]:
             bound=settings.bound,
             points=points,
             starts=max(settings.starts, least_starts),
-            solver=settings.solves,
+            solver=settings.solver,
         )
     except QuietarmError:
         return {}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import joint_unit
+from quietarm.models.dimensions import WAY
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.checks import finite, has_no, quoted
 from quietarm.ocp.task import OF_MOVES
@@ -54,7 +54,7 @@ class MoveGrid:
 
     def __post_init__(self) -> None:
         units = self.task.plant.units()
-        units |= {name: joint_unit(unit, self.task.plant.joint) for name, unit in OF_MOVES.items()}
+        units |= {name: unit.of(self.task.plant.joint) for name, unit in OF_MOVES.items()}
         for axis in self.axes:
             if axis.name not in units:
                 raise ValueError(
@@ -81,7 +81,7 @@ class MoveGrid:
         starts = known.get("start", (self.task.start,))
         for same in sorted({*starts} & {*known.get("target", (self.task.target,))}):
             raise ValueError(
-                f"start and target are both {same:g} {joint_unit('rad', self.task.plant.joint)} in "
+                f"start and target are both {same:g} {WAY.of(self.task.plant.joint)} in "
                 "some cells: there is no move; leave that value out of one axis"
             )
         if self.axes and isinstance(self.task.residual_window, DefaultWindow):

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from quietarm.interrupts import note_interrupts
 from quietarm.metaheuristics.parallel import LostWorkersError, reach, side_by_side
-from quietarm.models.joint_motion import joint_unit
 from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
 from quietarm.ocp.checks import has_no, several, takes
 from quietarm.ocp.planning.choose_profile import choose_profile
@@ -73,7 +72,7 @@ def sweep(
         When a worker died or the scheduler is gone; finished chunks are kept.
     """
     units = task.plant.units()
-    units |= {name: joint_unit(unit, task.plant.joint) for name, unit in OF_MOVES.items()}
+    units |= {name: unit.of(task.plant.joint) for name, unit in OF_MOVES.items()}
     if not isinstance(axes, Mapping):
         raise ValueError(f"axes are {axes!r}; give values by name, as {{'target': [0.3, 0.6]}}")
     for name in axes:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from floors import coarse_floors
-from pages import COMMAND_BLOCKS, PAGES, blocks
+from pages import COMMAND_BLOCKS, PAGES, blocks, shown_file
 from robots import urdf_of
 
 from quietarm.models import SingleLinkManipulator
@@ -31,7 +31,7 @@ MOVE, ENERGY = blocks("moves", "python")
 (MACHINE,) = blocks("machine", "python")
 (CELL,) = blocks("sweeps", "python")
 (BEGUN,) = blocks("start", "python")
-(PROFILE,) = blocks("extend", "python")
+PROFILE = shown_file("extend", "minimum_jerk.py")
 (PLAIN,) = blocks("casadi", "python")
 (PLAIN_PRINTS,) = blocks("casadi", "text")
 SEARCH_OF_PYMOO, FRONT, FOUR_OBJECTIVES = blocks("fronts", "python")
@@ -206,7 +206,7 @@ def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 19
+    assert sum(len(blocks(page, "python")) for page in others) == 27
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 
@@ -262,7 +262,7 @@ def follow(tmp_path, capfd, monkeypatch, quick_pictures):
 
 
 ELSEWHERE = (STARTED, "explore", "machine", "gallery", "start")
-"""The page of explore stays until Ctrl-C: tests/studies/explore opens it. The gallery's commands
+"""The page of explore stays until Ctrl-C: tests/views/page opens it. The gallery's commands
 make its pictures: test_pictures.py."""
 CALLED = [name for name in COMMAND_BLOCKS if not name.startswith(ELSEWHERE)]
 

@@ -1,16 +1,15 @@
 """A motion's figures by `symbolic_rollout` in numbers, with the plant's scenarios one by one."""
 
-from dataclasses import replace
 from functools import lru_cache
 from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
 
-from quietarm.ocp import FreeVibration, Motion, symbolic_rollout
+from quietarm.ocp import Figures, FreeVibration, symbolic_rollout
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.ocp.simulation.objective import PEAKS, integrated
+from quietarm.ocp.simulation.objective import integrated
 
 
 @lru_cache(maxsize=64)
@@ -39,18 +38,13 @@ def _of_scenario(task, plant, profile, coefficients, steps):
     vibration = FreeVibration(plant, task.target, task.residual_window)
     past_target = (angles - task.target) * np.sign(task.span)
     peaks = zip(QUANTITIES.values(), quantities, strict=True)
-    motion = Motion(
-        residual=float(np.abs(vibration.rows @ task.missed(arrival.ravel())).max()),
-        energy=energy.item(),
-        net_work=net_work.item(),
-        overshoot=max(0.0, past_target.max()),
-        ranges={
-            quantity.name: (float(values.min()), float(values.max()))
-            for quantity, values in zip(QUANTITIES.values(), quantities, strict=True)
-            if quantity.peak not in PEAKS
-        },
-        **{one.peak: float(np.abs(values).max()) for one, values in peaks if one.peak in PEAKS},
-    )
+    motion = {
+        "residual": float(np.abs(vibration.rows @ task.missed(arrival.ravel())).max()),
+        "energy": energy.item(),
+        "net_work": net_work.item(),
+        "overshoot": max(0.0, past_target.max()),
+        **{one.peak: float(np.abs(values).max()) for one, values in peaks},
+    }
     return motion, arrival.ravel()
 
 
@@ -64,7 +58,7 @@ def rollout(task, profile, coefficients, steps=None):
         _of_scenario(task, plant, profile, coefficients, steps) for plant in task.perturbed_plants
     ]
     residual, deflection = (
-        max(getattr(motion, name) for motion, _ in each) for name in ("residual", "peak_deflection")
+        max(motion[name] for motion, _ in each) for name in ("residual", "peak_deflection")
     )
-    motion = replace(each[0][0], residual=residual, peak_deflection=deflection)
+    motion = Figures({**each[0][0], "residual": residual, "peak_deflection": deflection})
     return SimpleNamespace(motion=motion, arrival=each[0][1], steps=steps)

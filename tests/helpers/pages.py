@@ -15,6 +15,11 @@ def blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```$", PAGES[page], re.DOTALL | re.MULTILINE)
 
 
+def shown_file(page: str, name: str) -> str:
+    """The Python file that a page shows, whose first line is its name in a comment."""
+    return next(block for block in blocks(page, "python") if block.startswith(f"# {name}\n"))
+
+
 TWO_COMMANDS = [block.strip() for block in blocks("README", "console")[:2]]
 """What .ci/run takes from the README; what stands before them has another fence."""
 NOTEBOOK = next(block.strip() for block in blocks("README", "console") if "jupyter" in block)

@@ -27,12 +27,6 @@ def renew_checksum(document):
     document["checksum"] = hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
-def make_earlier(document):
-    """Make the document of a front one of the version that had no checksum."""
-    document.pop("checksum", None)
-    document["version"] = 4
-
-
 def with_whole_numbers(entry):
     """An entry of a document with 1 in the place of 1.0, as checksums are of."""
     if isinstance(entry, dict):

@@ -115,7 +115,7 @@ class Gantry(qa.Plant):
 
     omega_x: float = qa.parameter(15.0, "rad/s", "chosen")
     omega_y: float = qa.parameter(19.0, "rad/s", "chosen")
-    zeta: float = qa.parameter(0.01, "-", "chosen")
+    zeta: float = qa.parameter(0.01, "-", "chosen", kind="damping")
     share_x: float = qa.parameter(0.8, "-", "of the way, along x")
     share_y: float = qa.parameter(0.6, "-", "of the way, along y")
     mass_x: float = qa.parameter(30.0, "kg", "that moves along x")

@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 import quietarm as qa
 from quietarm.metaheuristics import problem_of, run_jobs
 from quietarm.metaheuristics.archive import Archive, entering
+from quietarm.metaheuristics.evaluation.population import objectives_of, search_evaluator
 from quietarm.metaheuristics.jobs import Job
-from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
 from quietarm.metaheuristics.score import (
     HYPERVOLUME,
-    INDICATORS,
     Indicator,
     Reference,
     Scale,
     final_share_of_box,
+    known_indicators,
     scores_on_the_way,
     shares_of_box,
 )
@@ -85,13 +85,21 @@ def test_marks_hold_effort_and_figures_follow_from_the_entries():
 
 
 @pytest.mark.slow
-def test_an_indicator_that_is_added_is_known_on_the_way_of_runs_that_are_stored(tmp_path):
+def test_an_indicator_that_is_added_is_known_on_the_way_of_runs_that_are_stored(
+    tmp_path, what_is_made_up_is_forgotten
+):
     jobs = [Job(NAME, "nsga2", seed, 300, {"population": 20}) for seed in range(3)]
     results = Results.of_jobs(run_jobs(jobs, tmp_path))
-    hausdorff = Indicator(
-        "hausdorff", "averaged Hausdorff", "", False, "larger mean distance of two fronts",
-        lambda scaled, scale: moocore.avg_hausdorff_dist(scaled, ref=scale.stations),
-    )  # fmt: skip
+
+    class Hausdorff(Indicator):
+        """Larger mean distance of two fronts."""
+
+        name = "hausdorff"
+
+        def value(self, points, scale):
+            return moocore.avg_hausdorff_dist(points, ref=scale.stations)
+
+    hausdorff = Hausdorff()
     front = results.runs[0].front
     scale = problem_of(NAME).reference()
     on_the_way = scores_on_the_way(front, scale, hausdorff)
@@ -122,7 +130,7 @@ def test_indicators_of_a_square(front_of_two):
     assert scores["igd_plus"] == pytest.approx((0.5 + 1.0) / 2)
     nothing = scale.scores(np.empty((0, 2)))
     assert nothing["hypervolume"] == 0.0
-    assert np.isnan([nothing[name] for name in INDICATORS if name != "hypervolume"]).all()
+    assert np.isnan([nothing[name] for name in known_indicators() if name != "hypervolume"]).all()
     assert scale.score(scale.front.coefficients[:0], HYPERVOLUME) == 0.0
     assert isinstance(scale, Scale)
 

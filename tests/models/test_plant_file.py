@@ -23,6 +23,12 @@ def test_a_plant_that_was_renamed_is_not_among_those_of_the_new_content(crane_fi
     assert list(load_plant_file(crane_file)) == ["derrick"]
 
 
+def test_a_file_without_a_plant_may_define_something_else(tmp_path):
+    path = tmp_path / "energies.py"
+    path.write_text("import quietarm as qa\nclass Half(qa.AbsolutePower):\n    absolute = 0.5\n")
+    assert load_plant_file(path) == {}
+
+
 def test_its_plants_go_to_other_processes(crane_file):
     crane = load_plant_file(crane_file)["crane"](omega=2.0)
     assert pickle.loads(pickle.dumps(crane)) == crane
@@ -44,6 +50,11 @@ OWN = "from quietarm.models import Plant, SingleLinkManipulator\nclass S(Plant):
         ),
         ("crane.py", "raise SystemExit", ", line 1: it calls sys.exit(), which would end"),
         ("crane.py", OWN + "name, modes = 's', 1", "with a name, modes, modal_acc"),
+        (
+            "crane.py",
+            OWN + "name, modes = 's', 1\nclass Other(SingleLinkManipulator): pass",
+            "with a name, modes, modal_acc",
+        ),
         ("crane.py", OWN + "name = 'single-link'", "quietarm's own; give S another"),
         ("plan.json", "raise RuntimeError('run')", "is not called .py"),
     ],

@@ -11,7 +11,8 @@ from sound_plant import Sound
 from third_opinion import EQUATIONS, PHI
 
 import quietarm as qa
-from quietarm.models import JointMotion, joint_unit
+from quietarm.models import JointMotion
+from quietarm.models.dimensions import ACCELERATION
 
 motions = st.floats(-10.0, 10.0)
 """Angles, speeds, accelerations, amplitudes and rates: larger than any in the paper's figures."""
@@ -73,7 +74,7 @@ def test_a_linear_axis_is_two_masses_and_a_spring():
     assert ddW == pytest.approx(-7.0 - 2 * 0.1 * 20.0 * 0.3 - 400.0 * 0.01)
     force = axis.torque(joint, [0.01], [0.3], [ddW])
     assert force == pytest.approx((5.0 - 2.0) * 7.0 + 2.0 * (7.0 + ddW) + 3.0 * 0.5)
-    assert joint_unit("rad/s^2", axis.joint) == "m/s^2"
+    assert ACCELERATION.of(axis.joint) == "m/s^2"
     for wrong, told in (({"load": 9.0}, "load is 9 kg"), ({"share1": 1.2}, "shares of the swing")):
         with pytest.raises(ValueError, match=told):
             qa.LinearAxis(**wrong)

@@ -141,7 +141,7 @@ def test_energies_are_values():
 def _driven(torque, speed):
     """A sample of one joint of which energies read torque and speed."""
     joint = JointMotion(0.0, speed, 0.0)
-    nothing = {"W": [], "dW": [], "ddW": [], "tips": [], "tip_speeds": []}
+    nothing = {"W": [], "dW": [], "ddW": [], "tips": []}
     return Sample(path=joint, joints=[joint], torques=[torque], **nothing)
 
 
@@ -175,7 +175,7 @@ def test_an_energy_that_is_wrong_is_refused_when_it_is_asked_for(members, told):
         qa.PointToPoint(qa.SingleLinkManipulator(), math.pi / 6, 0.8, energy=energy)
 
 
-PLAN_OF_BEFORE = Path(__file__).parents[1] / "fixtures" / "2026-11-27-plans" / "plan.json"
+PLAN_OF_BEFORE = Path(__file__).parents[1] / "fixtures" / "2.0.0" / "plan.json"
 TAKES_A_NAME = f"""
 from dataclasses import dataclass
 import quietarm as qa

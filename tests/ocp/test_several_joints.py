@@ -140,7 +140,9 @@ def test_limits_hold_for_each_joint_by_its_name(links):
     assert elbow.max() <= 9.0 * (1 + 1e-6)
     moving = plan.trajectory.sample.joints[0]
     assert np.abs(moving.acceleration).max() <= 40.0 * (1 + 1e-6)
-    assert plan.motion.ranges["torque"] == pytest.approx((-1.0, 1.0), rel=1e-2)
+    assert plan.figures.range_of(plan.task.limit_of("torque").quantity) == pytest.approx(
+        (-1.0, 1.0), rel=1e-2
+    )
     assert plan.motion.peak_torque == pytest.approx(np.abs(shoulder).max(), rel=1e-3)
     assert task.limits[0].bounds == "shoulder 36 N m; elbow -6.5 to 9 N m"
 

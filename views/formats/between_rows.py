@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Expression, JointMotion
-from quietarm.models.joint_motion import joint_label
+from quietarm.models.dimensions import ANGLE
 from quietarm.ocp import Candidate, Plan
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
-from quietarm.views.formats.move_tables import times_of
+from quietarm.views.formats.move_tables import columns_of, times_of
 from quietarm.views.tips import tip_words
 
 Array = NDArray[np.float64]
@@ -27,6 +27,11 @@ _BETWEEN = {
 """How it is interpolated, by how many of `OF_POINTS` there are."""
 _TOLD = 1e-3
 """Share of the largest deflection on the way: so much more than the plan's residual is told."""
+
+
+def note_of_rows(plan: Plan, columns: str, rate: float) -> str:
+    """`interpolation_note` of the columns of a table, as typed."""
+    return interpolation_note(plan, rate, tuple(columns_of(columns, plan.task.plant)))
 
 
 def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
@@ -57,7 +62,7 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
         words = tip_words(residual, plant.tip_unit)
         if residual <= most:
             return note and f"{note}; --rate {rate:g} leaves {words}"
-        between = _BETWEEN[derivatives].format(joint_label("angle", plant.joint))
+        between = _BETWEEN[derivatives].format(ANGLE.of(plant.joint))
         coarse = f"{rate:g} Hz is coarse: a controller that interpolates by {between} leaves"
         note = note or f"{coarse} {words}"
         rate *= 2

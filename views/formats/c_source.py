@@ -4,17 +4,30 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import JointMotion, joint_unit
+from quietarm.models.dimensions import WAY
+from quietarm.models.joint_motion import JointMotion
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import c_comment, c_string
+from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.limits import EXPORT
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
+from quietarm.views.formats.export_format import (
+    DATASET,
+    PLAN,
+    Answers,
+    Exported,
+    ExportFormat,
+    Progress,
+    values_of,
+)
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import limit_words, move_of, moved, window_words
 from quietarm.views.tips import tip_words
@@ -27,13 +40,33 @@ _STATEMENTS = re.compile(r"^static int casadi_f0\([^)]*\) \{\n(.*?)\n  return 0;
 """What CasADi's generator writes: small functions, and the body of the first function."""
 
 
-def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
+class CSource(ExportFormat):
+    """The motion at any time from the coefficients, with nothing but math.h."""
+
+    name = "c"
+    endings = (".c",)
+    beside = (".h",)
+    meaning = "C source"
+    takes = (PLAN, DATASET)
+
+    def check_path(self, path: Path) -> None:
+        """Refuse a name that no function can have."""
+        name = path.stem
+        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            raise ValueError(
+                f"{name}.c would hold a function {name}_at, which is no name in C; give a file "
+                "name of letters, digits and _ that begins with a letter"
+            )
+
+    def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:
+        """Header and source."""
+        (moves,) = values_of(answers)
+        header, source = _c_files(moves, path.stem)
+        return Exported({path.with_suffix(".h"): header, path: source})
+
+
+def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     """Header and source whose functions are called after a file's name."""
-    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-        raise ValueError(
-            f"{name}.c would hold a function {name}_at, which is no name in C; give a file name "
-            "of letters, digits and _ that begins with a letter"
-        )
     if isinstance(moves, Plan):
         task = moves.task
         versions = moves.record.versions
@@ -43,7 +76,8 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         residual = tip_words(moves.residual, task.plant.tip_unit)
         figures = f"energy {moves.energy:.4g} J, residual {residual} "
         figures += window_words(task.residual_window)
-        figures = ", ".join([figures, *limit_words(task)])
+        added = added_words(moves.candidate, EXPORT)
+        figures = ", ".join([figures, *added, *limit_words(task)])
     else:
         task = moves.grid.task
         versions = moves.store.note("versions")
@@ -63,7 +97,7 @@ def c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         texts.get_template(f"views/formats/templates/move.{kind}").render(
             name=name, upper=name.upper(), size=moves.profile.size, title=title,
             figures=figures[0].upper() + figures[1:], version=versions.get("quietarm", ""),
-            unit=joint_unit("rad", task.plant.joint), axes=axes, between=between,
+            unit=WAY.of(task.plant.joint), axes=axes, between=between,
             most=between and between.most_cells,
             move=move | {axis.name: axis.name for axis in axes if axis.name in move},
             coefficients=() if between else moves.coefficients, helpers=helpers,

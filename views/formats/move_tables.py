@@ -1,25 +1,29 @@
-"""A move as rows of numbers: chosen columns, units and rate; as CSV, for ROS 2, for MATLAB."""
+"""A move as rows of numbers: chosen columns, units and rate."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from math import degrees
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion, joint_label
+from quietarm.models.dimensions import words_of
+from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion
 from quietarm.ocp import Plan
 from quietarm.ocp.checks import unknown
-from quietarm.ocp.escapes import csv_table, matlab_names, yaml_string
 from quietarm.ocp.joint_words import heading_unit
 from quietarm.ocp.planning.plan import ticks_of_move
-from quietarm.views.report.templates import templates
+from quietarm.views.formats.export_format import ExportSetting
 
 Array = NDArray[np.float64]
+COLUMNS = ExportSetting(
+    "columns", "time,angle,speed,acceleration", "Columns, with units: time:ms,angle:deg,speed,"
+    "acceleration,jerk,tip:mm,torque,power.",
+)  # fmt: skip
+RATE = ExportSetting("rate", 1000.0, "Rows or points in a second [Hz].", unit="Hz")
+"""What formats of rows may be told."""
 _WAYS: Mapping[str, Mapping[str, float]] = {
     ROTARY: {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},
     LINEAR: {"m": 1.0, "mm": 1e3},
@@ -68,7 +72,7 @@ def columns_of(text: str, plant: Plant) -> dict[str, Units]:
     """
     kinds = [*plant.joint_kinds, *map(plant.kind_of, plant.followers)]
     by_kind = {kind: units_of(kind, plant.tip_unit) for kind in dict.fromkeys(kinds)}
-    words = {joint_label(name, kind): name for kind in by_kind for name in by_kind[kind]}
+    words = {words_of(name).of(kind): name for kind in by_kind for name in by_kind[kind]}
     words |= {name: name for units in by_kind.values() for name in units}
     columns = dict[str, Units]()
     for heading in text.split(","):
@@ -132,7 +136,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
                 for joint, motion in following.items()
             ]
         return {
-            _heading(f"{front}{joint_label(name, kind)}", units[kind][0]): units[kind][1] * column
+            _heading(f"{front}{words_of(name).of(kind)}", units[kind][0]): units[kind][1] * column
             for front, kind, column in rows
         }
 
@@ -167,57 +171,3 @@ def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
 def times_of(plan: Plan, rate: float) -> Array:
     """Times of the rows [s] at a rate [Hz], up to the first at or after arrival."""
     return np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate
-
-
-def csv_text(plan: Plan, columns: str, rate: float) -> str:
-    """Comma-separated values under a heading."""
-    return csv_table(table(plan, columns, rate), "%.12g")
-
-
-def mat_bytes(plan: Plan, columns: str, rate: float) -> bytes:
-    """A MATLAB v5 file: a column vector for each column, the coefficients and the duration.
-
-    Names of several joints are a cell array as well, as they are.
-    """
-    from scipy.io import savemat  # slow to load
-
-    file = io.BytesIO()
-    rows = table(plan, columns, rate)
-    vectors = dict(zip(matlab_names(rows), rows.values()))
-    facts: dict[str, Any] = {
-        "coefficients": plan.coefficients,
-        "duration_s": plan.task.duration,
-    }
-    joints = plan.task.plant.joint_names
-    if len(joints) > 1:
-        facts["joint_names"] = np.array(joints, dtype=object)
-    savemat(file, {**facts, **vectors}, oned_as="column")
-    return file.getvalue()
-
-
-def ros_text(plan: Plan, rate: float, joint: str) -> str:
-    """A message trajectory_msgs/JointTrajectory of ROS 2 in YAML, of all joints.
-
-    A single joint has the name that is given, those of a robot and of several have the plant's.
-    """
-    motion = plan.sampled(times_of(plan, rate))
-    orders = [
-        np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
-        for order in range(3)
-    ]
-    points = [
-        (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in moving])
-        for time, *moving in zip(motion.time, *orders)
-    ]
-    joint_names = plan.task.plant.joint_names
-    names = joint_names if plan.task.plant.has_path else (joint,)
-    texts = templates(keep_trailing_newline=True)
-    scalars = [yaml_string(name) for name in names]
-    return texts.get_template("views/formats/templates/move.yaml").render(
-        joints=scalars, points=points
-    )
-
-
-def _decimal(value: float) -> str:
-    """Twelve digits with a point: ROS takes no whole number for a real one."""
-    return repr(float(f"{value:.12g}"))

@@ -11,32 +11,39 @@ const MARK_PATHS = {
   X: "M-4.2 -2.4L-2.4 -4.2L0 -1.8L2.4 -4.2L4.2 -2.4L1.8 0L4.2 2.4L2.4 4.2L0 1.8L-2.4 4.2L-4.2 2.4L-1.8 0Z",
   "*": "M0 -7L1.7 -2.2L6.7 -2.2L2.7 0.9L4.1 5.7L0 2.8L-4.1 5.7L-2.7 0.9L-6.7 -2.2L-1.7 -2.2Z",
 };
+const KEPT_DASHES = "6 4";
 const CYCLOID = { mark: "s", colour: "cycloid", filled: true };
 const APART = 13; // pixels between two points of a search that are drawn
 const KNOB = 14; // pixels from the handle's middle to its edge
 const front = { touched: false, box: null, obstacles: [], cycloid: null, cycloidIsOutside: false };
 
+const FAR = 3; // times as far as the front: what lies beyond stands at the edge
 const limitsOfFront = (about) => {
-  const { points, beside, cycloid, factor, rest } = state.move;
+  const { points, beside, cycloid, factor, rest } = frontMove();
   const others = beside.flatMap(({ points: places }) => places).filter(([residual]) => residual !== null);
   const residuals = [...points.map((point) => point.residual), ...others.map(([residual]) => residual)];
   const energies = [...points.map((point) => point.energy), ...others.map(([, energy]) => energy)];
+  if (isByHand()) {
+    residuals.push(Math.min(chosen().residual, FAR * Math.max(...residuals)));
+    energies.push(Math.min(chosen().energy, FAR * Math.max(...energies)));
+  }
   const [rightmost, highest] = [Math.max(...residuals), Math.max(...energies)];
   const lowest = Math.min(...energies, cycloid.energy);
   // a cycloid that is far away stands at the edge: else a front would be a dot
-  const far = points.length > 1 && rightmost > rest ? 3 : Infinity;
+  const far = points.length > 1 && rightmost > rest ? FAR : Infinity;
   const right = Math.min(Math.max(rightmost, cycloid.residual), far * rightmost || Infinity) || 1 / factor;
   const high = Math.min(Math.max(highest, cycloid.energy), far * highest || Infinity) || 1;
   // where all take nearly the same energy the axis does not begin at zero
-  const flat = lowest > 0.6 * high && high > lowest;
+  const flat = points.length + others.length > 1 && lowest > 0.6 * high && high - lowest > 1e-6 * high;
   const low = flat ? Math.max(0, lowest - 0.35 * (high - lowest)) : 0;
   return [axisOf(0, factor * right, about[0]), axisOf(low, high + 0.03 * (high - low), about[1])];
 };
 const place = (residual, energy) => [front.box.x(state.move.factor * residual), front.box.y(energy)];
 const placeOf = (point) => place(point.residual, point.energy);
+const within = ([x, y], box) => [Math.min(x, box.right), Math.max(Math.min(y, box.bottom), box.top)];
 
 const drawFront = () => {
-  const { points, beside, joined, residual, unit, mark: sign, this: own } = state.move;
+  const { points, beside, joined, residual, unit, mark: sign, this: own } = frontMove();
   const plot = byId("plot");
   const narrow = byId("front").clientWidth < 420;
   const [across, along] = limitsOfFront([narrow ? 4 : 6, 5]);
@@ -53,6 +60,7 @@ const drawFront = () => {
   else for (const place of places) mark(plot, { mark: sign, colour: own, filled: points[0].name !== "" }, place);
   front.obstacles.push(...alongLine(places, isLine).map((place) => boxAround(place, isLine ? 3 : 5)));
   for (const others of beside) drawBeside(plot, others, box);
+  if (state.kept) drawKept(plot, box);
   front.guides = draw(plot, "path", { fill: "none", stroke: "var(--this)", "stroke-opacity": 0.45 });
   drawCycloid(plot, box);
   setAll(byId("handle"), { "aria-valuemax": points.length });
@@ -71,7 +79,7 @@ const alongLine = (places, isLine) => {
 const drawCycloid = (plot, box) => {
   const { cycloid, factor } = state.move;
   const there = [box.x(factor * cycloid.residual), box.y(cycloid.energy)];
-  const [x, y] = [Math.min(there[0], box.right), Math.max(Math.min(there[1], box.bottom), box.top)];
+  const [x, y] = within(there, box);
   const outside = Math.hypot(there[0] - x, there[1] - y) > 1;
   front.cycloidIsOutside = outside;
   const words = outside ? `plain cycloid, further out: ${cycloid.spot}` : "plain cycloid";
@@ -109,8 +117,13 @@ const drawLevel = (plot, label, energy, box) => {
   const y = box.y(energy);
   draw(draw(plot, "line", { x1: box.left, x2: box.right, y1: y, y2: y, stroke: "var(--paper)", "stroke-dasharray": "7 3 1.6 3" }), "title", {}, label);
 };
+const drawKept = (plot, box) => {
+  const here = within(place(state.kept.residual, state.kept.energy), box);
+  mark(plot, alive.kept, here);
+  front.obstacles.push(boxAround(here, 6));
+};
 const drawKey = () => {
-  const { points, beside, joined, method, mark: sign, this: own } = state.move;
+  const { points, beside, joined, method, mark: sign, this: own } = frontMove();
   const key = byId("key");
   key.replaceChildren();
   const entry = (label, drawSign) => {
@@ -122,17 +135,22 @@ const drawKey = () => {
   const markOf = (look, size) => (picture) => mark(picture, look, [11, 7], size);
   entry(method, joined && points.length > 1 ? (picture) => draw(picture, "path", { d: "M0 7H22", stroke: "var(--this)", "stroke-width": 2.6 }) : markOf({ mark: sign, colour: own, filled: points[0].name !== "" }));
   for (const others of beside) entry(others.label, markOf({ ...others, filled: isFilled(others) }));
+  if (state.kept) entry("the curve that was kept", (picture) => {
+    draw(picture, "path", { d: "M0 7H22", stroke: `var(--${alive.kept.colour})`, "stroke-width": 1.7, "stroke-dasharray": KEPT_DASHES });
+    mark(picture, alive.kept, [11, 7]);
+  });
   entry("plain cycloid (not optimised)", markOf({ ...CYCLOID, filled: !front.cycloidIsOutside }, 1.5));
 };
 
 const coarse = matchMedia("(pointer: coarse)");
 const placeHandle = () => {
   const point = chosen();
-  const [x, y] = placeOf(point);
+  const [x, y] = within(placeOf(point), front.box);
   const { left, bottom } = front.box;
-  setAll(byId("handle"), { transform: `translate(${x} ${y})`, "aria-valuenow": state.point + 1, "aria-valuetext": [point.name, point.spot].filter(Boolean).join(": ") });
+  const number = isByHand() ? nearestPoint(placeOf(point)) : state.point;
+  setAll(byId("handle"), { transform: `translate(${x} ${y})`, "aria-valuenow": number + 1, "aria-valuetext": [point.name, point.spot].filter(Boolean).join(": ") });
   front.guides.setAttribute("d", `M${left} ${y}H${x}V${bottom}`);
-  const several = lastPoint() > 0;
+  const several = lastPoint() > 0 && !isByHand();
   const invitation = coarse.matches ? "drag me" : "drag, or use the arrow keys";
   const spot = byId("spot");
   spot.textContent = front.touched || !several ? unbroken(point.spot) : invitation;
@@ -148,18 +166,26 @@ const choose = (number) => {
     byId("handle").classList.remove("fresh");
     placeHandle();
   }
-  if (next === state.point) return;
+  if (next === state.point && !isByHand()) return;
   state.point = next;
-  placeHandle();
-  showMotion();
+  if (isByHand()) enter(state.front);
+  else {
+    placeHandle();
+    showMotion();
+  }
+  onChoice(next);
+};
+let onChoice = () => {}; // what else happens when a motion of a front is chosen
+const nearestPoint = ([x, y]) => {
+  const distances = frontMove().points.map((point) => {
+    const [atX, atY] = placeOf(point);
+    return Math.hypot(atX - x, atY - y);
+  });
+  return distances.indexOf(Math.min(...distances));
 };
 const nearestTo = (event) => {
   const { left, top } = byId("front").getBoundingClientRect();
-  const distances = state.move.points.map((point) => {
-    const [x, y] = placeOf(point);
-    return Math.hypot(x + left - event.clientX, y + top - event.clientY);
-  });
-  return distances.indexOf(Math.min(...distances));
+  return nearestPoint([event.clientX - left, event.clientY - top]);
 };
 draggable(byId("front"), {
   onBegin: (event) => {
@@ -167,7 +193,7 @@ draggable(byId("front"), {
     byId("handle").classList.remove("keyed");
     byId("handle").focus({ preventScroll: true });
   },
-  onMove: (event) => choose(nearestTo(event)),
+  onMove: (event) => { if (lastPoint() > 0) choose(nearestTo(event)); },
 });
 
 // Keys: left and right wherever nothing else needs them; in a frame up and down go on to scroll the page around it.
@@ -176,7 +202,9 @@ const UPRIGHT = { ArrowDown: 1, ArrowUp: -1, PageDown: 5, PageUp: -5 };
 const ENDS = { Home: -Infinity, End: Infinity };
 const chooseBy = (key) => {
   byId("handle").classList.add("keyed");
-  choose(state.point + { ...SIDEWAYS, ...UPRIGHT, ...ENDS }[key]);
+  if (lastPoint() === 0) return;
+  const from = isByHand() ? nearestPoint(placeOf(chosen())) : state.point;
+  choose(from + { ...SIDEWAYS, ...UPRIGHT, ...ENDS }[key]);
 };
 const beginKeys = () => {
   byId("handle").classList.add("keyed");

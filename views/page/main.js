@@ -48,7 +48,7 @@ const holdRoom = () => {
   const byLength = [...state.move.points].sort((a, b) => b.sentence.length - a.sentence.length);
   const heights = byLength.slice(0, LONGEST).map((point) => {
     say(point);
-    return room.offsetHeight;
+    return Math.ceil(room.getBoundingClientRect().height); // a part of a pixel would move what is below
   });
   room.style.minHeight = `${Math.max(...heights)}px`;
 };
@@ -70,12 +70,14 @@ const showTime = () => {
   setAll(byId("time"), { "aria-valuetext": `${words} seconds` });
   byId("phase").textContent = time < move.duration ? "moving" : chosen().swing;
 };
+const alsoDrawn = []; // functions
 const drawAll = () => {
   drawFront();
   drawKey();
   drawScene();
   drawSwing();
   drawPanels();
+  for (const drawMore of alsoDrawn) drawMore();
   ghostTrails = trailsOf(ofCycloid(state.move.scores));
   holdRoom();
   showMotion();
@@ -92,23 +94,31 @@ const beginNames = (points) => {
   names.replaceChildren();
   points.forEach(({ name }, k) => Object.assign(element(names, "option", name), { value: k }));
 };
-const take = (move) => {
+// Show a move, its point that is chosen, and this time of it or its end.
+const enter = (move) => {
+  const lasts = state.move.end;
   state.move = move;
-  state.point = Math.min(state.point, lastPoint());
   state.time = Math.min(state.time, move.end);
   byId("time").max = move.end;
   document.documentElement.style.setProperty("--this", `var(--${move.this})`);
   document.documentElement.style.setProperty("--this-ink", `var(--${move.this}-ink)`);
   beginPanels();
-  beginSpeeds();
-  const several = lastPoint() > 0;
-  byId("heading").textContent = several ? "How still, for how much energy?" : "A motion, and the plain cycloid";
-  byId("choosing").hidden = !several;
+  if (move.end !== lasts || !byId("speeds").hasChildNodes()) beginSpeeds();
+  byId("choosing").hidden = lastPoint() === 0;
   beginNames(move.points);
-  byId("invitation").textContent = invitation(move, several);
   byId("title").textContent = unbroken(`${move.title}.`);
   byId("note").textContent = move.note;
   drawAll();
+};
+const take = (move) => {
+  const several = move.points.length > 1;
+  state.point = Math.min(state.point, move.points.length - 1);
+  if (!alive) {
+    byId("heading").textContent = several ? "How still, for how much energy?" : "A motion, and the plain cycloid";
+    byId("invitation").textContent = invitation(move, several);
+  }
+  for (const panel of panels) panel.names = null;
+  enter(move);
 };
 
 // The clock.
@@ -179,7 +189,7 @@ byId("time").addEventListener("input", () => {
   seek(Number(byId("time").value));
 });
 addEventListener("keydown", (event) => {
-  if (event.key !== " " || event.target.closest("button, input, select")) return;
+  if (event.key !== " " || event.target.closest("button, input, select, summary")) return;
   event.preventDefault();
   play(!state.playing);
 });

@@ -1,5 +1,5 @@
 // The page's numbers: what is stored, how it is read between samples, and how it is written.
-const { moves } = JSON.parse(document.getElementById("data").textContent);
+const { moves, alive } = JSON.parse(document.getElementById("data").textContent);
 
 // Rows of 16-bit integers in base64, each line with its unit.
 const unpack = ({ data, units, lines, samples }) => {
@@ -12,10 +12,12 @@ const unpack = ({ data, units, lines, samples }) => {
   const motions = lines ? bytes.length / (2 * lines * samples) : 0;
   return Array.from({ length: motions }, (_, motion) => Array.from({ length: lines }, (_, line) => row(motion, line)));
 };
-for (const move of moves) {
+const unpackMove = (move) => {
   move.scores = unpack(move.structure.scores);
   for (const panel of Object.values(move.panels)) panel.rows = unpack(panel.values);
-}
+  return move;
+};
+moves.forEach(unpackMove);
 
 const lastBefore = (times, time) => {
   let low = 0;

@@ -16,11 +16,10 @@ from quietarm.ocp import (
     evaluate_coefficients,
     task_difference,
 )
-from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.views.pictures import KnownPoint
-from quietarm.views.report.methods import described, is_gradient
+from quietarm.views.report.method_rows import described, is_gradient
 from quietarm.views.report.words import title_of_picture
 
 MOST_MOTIONS = 60
@@ -135,12 +134,26 @@ def moves_of(answers: Answers, known_points: KnownPoints | None = None) -> list[
     return [_move_of(group, known_points) for group in groups]
 
 
+def move_by_hand(plan: Plan, cycloid: Plan) -> Move:
+    """Show the one motion in hand, over the plain cycloid of its move."""
+    name = "this motion"
+    return Move(
+        label=name,
+        task=plan.task,
+        choices=(Choice(plan, *_place(plan), name=name),),
+        cycloid=cycloid,
+        method=name,
+        joined=False,
+        left_out=0,
+        beside=(),
+    )
+
+
 def _belong_together(first: Front | Plan, answer: Front | Plan) -> bool:
     """Whether F1 and F2 mean the same, and of two fronts the limits are the same, too."""
     tasks = [first.task, answer.task]
     if not (isinstance(first, Front) and isinstance(answer, Front)):
-        limits = [*(quantity.limit for quantity in QUANTITIES.values()), "torque_speed"]
-        tasks = [replace(task, **dict.fromkeys(limits)) for task in tasks]
+        tasks = [replace(task, bounds={}, torque_speed=None) for task in tasks]
     return not task_difference(*tasks)
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isnan, nan
 from typing import Self
 
 import numpy as np
 
-from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models import Plant
 from quietarm.ocp import Plan, PointToPoint
-from quietarm.ocp.limits import Limit
+from quietarm.ocp.figures import ENERGY, Figure, figures_in
+from quietarm.ocp.limits import PAGE, QUANTITIES, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.record import REST
 from quietarm.views.page.page_moves import Choice, Move
@@ -26,61 +29,58 @@ _ALIKE = 0.005
 
 
 @dataclass(frozen=True)
-class Figures:
-    """The figures of a motion in SI units, in the order of `figure_names`.
+class ShownFigures:
+    """The figures of a motion in SI units, by name, in the order of `figure_names`.
 
     Of several joints `peak_joint` is the one with the largest torque; else it is empty.
     """
 
-    residual: float
-    energy: float
-    peak_torque: float
-    peak_power: float
-    peak_tip: float
+    values: Mapping[str, float]
     peak_joint: str = ""
 
     @classmethod
     def of(cls, plan: Plan, residual: float, energy: float) -> Self:
         """Those of a motion, F1 and F2 as its front states them."""
-        motion = plan.motion
-        trajectory = plan.trajectory
-        peak_power = float(np.abs(trajectory.power).max())
+        values = {figure.name: plan.figures.get(figure.name, nan) for figure in figures_in(PAGE)}
         joints = names_of_curves(plan.task.plant, "torque")
         peak_joint = ""
         if len(joints) > 1:
-            moving = trajectory.time <= plan.task.duration
-            torques = np.abs(np.array(trajectory.sample.torques, dtype=float)[:, moving])
-            peak_joint = joints[int(torques.max(axis=1).argmax())]
-        return cls(
-            residual, energy, motion.peak_torque, peak_power, motion.peak_deflection, peak_joint
-        )
+            torques = plan.candidate.peaks_of_joints(QUANTITIES["torque"])
+            peak_joint = joints[int(torques.argmax())]
+        return cls({**values, RESIDUAL: residual, ENERGY: energy}, peak_joint)
 
     def cells(self, task: PointToPoint) -> list[str]:
         """The figures as a table shows them."""
-        factor = tip_scale(task.plant.tip_unit)[1]
-        residual = f"{factor * self.residual:.4g}"
-        if self.residual < REST:
-            residual = "at rest" if task.final is None else "as asked"
-        others = self.energy, self.peak_torque, self.peak_power, factor * self.peak_tip
-        return [residual, *(f"{value:.4g}" for value in others)]
+        cells = list[str]()
+        for figure in figures_in(PAGE):
+            value = self.values[figure.name]
+            if figure.name == RESIDUAL and value < REST:
+                cells.append("at rest" if task.final is None else "as asked")
+            elif isnan(value):
+                cells.append("-")
+            else:
+                factor = tip_scale(task.plant.tip_unit)[1] if figure.unit.is_tip_way else 1.0
+                cells.append(f"{factor * value:.4g}")
+        return cells
 
     def notes(self) -> list[str]:
         """What stands below each of the figures: the joint of the largest torque."""
-        return ["", "", self.peak_joint, "", ""]
+        figures = figures_in(PAGE)
+        return [self.peak_joint if figure.quantity == "torque" else "" for figure in figures]
 
 
 def figure_names(task: PointToPoint) -> list[str]:
     """What the figures are, with their units."""
-    plant = task.plant
-    unit = tip_scale(plant.tip_unit)[0]
-    torque = joint_label("joint torque", plant.joint)
-    return [
-        f"residual vibration F1 [{unit}]",
-        "energy F2 [J]",
-        f"peak {torque}, moving [{joint_unit('N m', plant.joint)}]",
-        "peak power [W]",
-        f"peak tip displacement, moving [{unit}]",
-    ]
+    return [_figure_name(figure, task.plant) for figure in figures_in(PAGE)]
+
+
+def _figure_name(figure: Figure, plant: Plant) -> str:
+    unit = figure.unit.on(plant.joint, plant.tip_unit)
+    shown = tip_scale(plant.tip_unit)[0] if unit.is_tip_way else unit.drawn or "-"
+    label = {RESIDUAL: "residual vibration F1", ENERGY: "energy F2"}.get(figure.name)
+    if figure.quantity:
+        label = f"peak {QUANTITIES[figure.quantity].label.of(plant.joint)}, moving"
+    return f"{label or figure.label_on(plant)} [{shown}]"
 
 
 def spot_words(choice: Choice) -> str:

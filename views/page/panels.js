@@ -1,5 +1,5 @@
 // Torque, power and tip displacement over time, on the clock of the motion; of several joints or tips one, which is chosen by its name.
-const panels = ["torque", "power", "deflection"].map((name) => {
+const panels = Object.keys(moves[0].panels).map((name) => {
   const box = element(byId("panels"), "div");
   const above = element(box, "div", "", "above");
   const panel = { name, line: 0, heading: element(above, "h2"), values: element(above, "output"), svg: draw(box, "svg", { role: "img" }) };
@@ -21,7 +21,10 @@ const panels = ["torque", "power", "deflection"].map((name) => {
   return panel;
 });
 const beginPanels = () => {
-  for (const panel of panels) panel.line = state.move.panels[panel.name].first;
+  for (const panel of panels) {
+    const { first, names } = state.move.panels[panel.name];
+    if (panel.names?.join() !== names.join()) Object.assign(panel, { names, line: first });
+  }
 };
 const drawPanels = () => {
   for (const panel of panels) drawPanel(panel, state.move.panels[panel.name]);
@@ -46,7 +49,8 @@ const drawPanel = (panel, quantity) => {
   const { svg } = panel;
   const { title, rows } = quantity;
   const limits = quantity.limits[panel.line];
-  const lines = rows.map((motion) => motion[panel.line]);
+  const kept = state.kept?.rows[panel.name][panel.line];
+  const lines = [...rows.map((motion) => motion[panel.line]), ...(kept ? [kept] : [])];
   const low = Math.min(0, ...limits, ...lines.map((row) => Math.min(...row)));
   const high = Math.max(0, ...limits, ...lines.map((row) => Math.max(...row)));
   const [across, along] = [timeAxis(end, svg.clientWidth < 260 ? 3 : 5), axisOf(low, high > low ? high : 1, 4)];
@@ -67,10 +71,18 @@ const drawPanel = (panel, quantity) => {
   panel.placeOf = (value, k) => [box.x(times[k]), box.y(value)];
   const curve = (colour, wide) => [1, AFTER].map((seen) => draw(svg, "path", { ...ROUND, stroke: colour, "stroke-width": wide, "stroke-opacity": seen }));
   setCurve(panel, curve("var(--cycloid)", 1.7), ofCycloid(rows)[panel.line]);
+  if (kept) drawKeptCurve(panel, kept, end);
   panel.curve = curve("var(--this)", 2.2);
   panel.cursor = draw(svg, "line", { y1: box.top, y2: box.bottom, stroke: "var(--ink)", "stroke-width": 1.2 });
   panel.ghostDot = draw(svg, "circle", { r: 3.5, fill: "var(--cycloid)" });
   panel.dot = draw(svg, "circle", { r: 4.5, fill: "var(--this)", stroke: "var(--card)", "stroke-width": 1.2 });
+};
+const drawKeptCurve = ({ svg, box }, row, end) => {
+  const { times, arrival } = state.kept;
+  const places = times.filter((time) => time <= end).map((time, k) => [box.x(time), box.y(row[k])]);
+  const look = { ...ROUND, "stroke-linecap": "butt", stroke: `var(--${alive.kept.colour})`, "stroke-width": 1.7, "stroke-dasharray": KEPT_DASHES };
+  draw(svg, "path", { ...look, d: pathOf(places.slice(0, arrival + 1)) });
+  draw(svg, "path", { ...look, d: pathOf(places.slice(arrival)), "stroke-opacity": AFTER });
 };
 const DOTTED = { stroke: "var(--limit)", "stroke-width": 1.5, "stroke-dasharray": "1.6 4", "stroke-linecap": "round" };
 // What the dotted lines are: above the picture, where no curve goes, on the side that the arrival leaves free.

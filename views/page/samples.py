@@ -98,18 +98,38 @@ class Shapes:
 def shapes_of(coordinates: Array, tolerance: float) -> Shapes:
     """The fewest shapes that give coordinates, shape (samples, coordinates), within a distance [m].
 
-    They are the principal components, so that a straight link that turns has two, one that bends as
+    They are principal components, so that a straight link that turns has two, one that bends as
     well has four.
     """
     mean = coordinates.mean(axis=0)
     moved = coordinates - mean
-    _, directions = np.linalg.eigh(moved.T @ moved)
-    directions = directions.T[::-1]
-    count = 0
-    remainder = moved
-    while count < len(directions) and np.abs(remainder).max() > tolerance:
-        count += 1
-        shapes = directions[:count]
-        remainder = moved - moved @ shapes.T @ shapes
-    shapes = directions[:count]
+    shapes = _fewest(moved, _principal(moved, _SOME), tolerance)
+    if not _is_close(moved, shapes, tolerance):
+        shapes = _fewest(moved, _principal(moved, len(moved)), tolerance)
     return Shapes(mean, shapes, moved @ shapes.T)
+
+
+def _fewest(moved: Array, directions: Array, tolerance: float) -> Array:
+    """The first directions that give rows within a distance, or all of them."""
+    for count in range(len(directions)):
+        if _is_close(moved, directions[:count], tolerance):
+            return directions[:count]
+    return directions
+
+
+def _is_close(moved: Array, shapes: Array, tolerance: float) -> bool:
+    """Whether rows are within a distance of sums of shapes."""
+    return bool(np.abs(moved - moved @ shapes.T @ shapes).max() <= tolerance)
+
+
+_SOME = 40
+"""Frames whose span mostly has all shapes; principal components of all coordinates take longer."""
+
+
+def _principal(moved: Array, frames: int) -> Array:
+    """Principal components of rows within the span of some of them, the largest first."""
+    places = np.unique(np.linspace(0, len(moved) - 1, frames).astype(int))
+    basis = np.linalg.qr(moved[places].T)[0]
+    within = moved @ basis
+    _, turns = np.linalg.eigh(within.T @ within)
+    return (basis @ turns[:, ::-1]).T

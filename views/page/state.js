@@ -1,9 +1,11 @@
-// What is chosen: a move, one of its motions, a time; and what is read of it.
-const state = { move: moves[0], point: 0, time: 0, playing: false, speed: 0.5 };
+// What is chosen: a move, one of its motions, a time; and what is read of it. A motion by hand is the only one of its move, and lies beside the front of another: `front`. A motion that is kept is drawn in all panels.
+const state = { move: moves[0], point: 0, time: 0, playing: false, speed: 0.5, front: null, kept: null };
 const framed = window.parent !== window; // in another page
 const AFTER = 0.45; // opacity of what is drawn after arrival
 const chosen = () => state.move.points[state.point];
-const lastPoint = () => state.move.points.length - 1;
+const frontMove = () => state.front ?? state.move;
+const isByHand = () => frontMove() !== state.move;
+const lastPoint = () => frontMove().points.length - 1;
 const ofChosen = (rows) => rows[state.point];
 const ofCycloid = (rows) => rows[state.move.points.length];
 

@@ -13,6 +13,7 @@ from matplotlib.colors import to_hex, to_rgb
 from numpy.typing import NDArray
 
 from quietarm.interrupts import interruptible
+from quietarm.models import Plant
 from quietarm.ocp import Front, Plan
 from quietarm.ocp.checks import instance, positive
 from quietarm.ocp.escapes import one_line, script_json
@@ -26,7 +27,7 @@ from quietarm.views.page.page_moves import (
     moves_of,
 )
 from quietarm.views.page.page_words import (
-    Figures,
+    ShownFigures,
     figure_names,
     robust_note,
     sentence,
@@ -42,8 +43,8 @@ from quietarm.views.pictures.motion import (
     limits_in_sight,
     names_of_curves,
 )
-from quietarm.views.pictures.structure import Part, Structure, structures_of
-from quietarm.views.report.methods import label_of
+from quietarm.views.pictures.structure import DrawnPart, Structure, structures_of
+from quietarm.views.report.method_rows import label_of
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import counted, raised, window_words
 from quietarm.views.tips import tip_scale
@@ -66,6 +67,8 @@ _SCRIPTS = (
     "numbers.js", "drawing.js", "state.js", "front.js", "arm.js", "panels.js", "main.js",
 )  # fmt: skip
 """In the order in which they need each other."""
+_ALIVE = ("dials.js", "robustness.js", "alive.js")
+"""Of the page that a server answers."""
 PANELS = ("torque", "power", "deflection")
 """Quantities that are drawn over time."""
 
@@ -79,14 +82,7 @@ class TradeOffPage:
 
     def html(self) -> str:
         """The page."""
-        environment = templates(autoescape=True)
-        environment.filters["in_script"] = script_json
-        template = environment.get_template("views/page/page.html")
-        page = template.render(
-            title=one_line(self.title), data={"moves": self.moves}, light=_colours(dark=False),
-            dark=_colours(dark=True), scripts=_SCRIPTS,
-        )  # fmt: skip
-        return page.lstrip()
+        return page_html(self.title, self.moves)
 
     @interruptible
     def save(self, path: str | Path) -> None:
@@ -134,7 +130,7 @@ def trade_off(
         positive("deflection scale", deflection_scale)
     moves = moves_of(_by_name(answers), known_points)
     budget = (MOST_BYTES - _OF_CODE) / len(moves)
-    shown = tuple(_shown(move, deflection_scale, budget) for move in moves)
+    shown = tuple(shown_move(move, budget, deflection_scale) for move in moves)
     title = moves[0].title if len(moves) == 1 else "quietarm"
     page = TradeOffPage(title, shown)
     size = len(page.html().encode())
@@ -145,6 +141,22 @@ def trade_off(
             f"kB, where {MOST_BYTES / 1e3:.0f} kB are the most; give fewer answers"
         )
     return page
+
+
+def page_html(
+    title: str, moves: Sequence[Mapping[str, Any]], alive: Mapping[str, Any] | None = None
+) -> str:
+    """Fill the template: the page by itself, or alive, with what its sliders need."""
+    environment = templates(autoescape=True)
+    environment.filters["in_script"] = script_json
+    template = environment.get_template("views/page/page.html")
+    data = {"moves": moves} | ({"alive": alive} if alive else {})
+    scripts = (*_SCRIPTS, *(_ALIVE if alive else ()))
+    page = template.render(
+        title=one_line(title), data=data, alive=bool(alive), light=_colours(dark=False),
+        dark=_colours(dark=True), scripts=scripts,
+    )  # fmt: skip
+    return page.lstrip()
 
 
 def _by_name(answers: Front | Plan | Sequence[Front | Plan] | Answers) -> Answers:
@@ -208,13 +220,27 @@ def _mixed(colour: str, towards: float, share: float) -> str:
     return to_hex((red, green, blue))
 
 
-def _shown(move: Move, scale: float | None, budget: float) -> dict[str, Any]:
-    """All that the scripts need of a move, within a number of bytes."""
+def shown_move(
+    move: Move, budget: float, scale: float | None = None, quantities: Sequence[str] = PANELS
+) -> dict[str, Any]:
+    """All that the scripts need of a move, within a number of bytes.
+
+    Parameters
+    ----------
+    move : Move
+        The motions that can be chosen, and what lies beside them.
+    budget : float
+        Bytes within which it is, as far as coarser curves can make it.
+    scale : float, optional
+        Scale of the deflections, as of `animate`.
+    quantities : sequence of str
+        What is drawn over time.
+    """
     # a share of a curve's peak that a line between its samples may miss it by: half a pixel
     tolerance = 0.005
     coarsest = 0.08
     curves_of_all = {
-        name: np.array([_lines(plan, name) for plan in move.motions]) for name in PANELS
+        name: np.array([_lines(plan, name) for plan in move.motions]) for name in quantities
     }
     while True:
         times, places = _sampled_times(move, curves_of_all, tolerance)
@@ -293,7 +319,7 @@ def _coordinates(structure: Structure) -> Array:
     return np.hstack([*parts, *structure.paths])
 
 
-def _part(part: Part) -> dict[str, Any]:
+def _part(part: DrawnPart) -> dict[str, Any]:
     points = part.points.shape[1]
     look = "rigid" if part.colour == INK else "link"
     if part.colour == FAINT:
@@ -313,15 +339,20 @@ def _panel(move: Move, quantity: str, values: Array) -> dict[str, Any]:
         "title": title[0].upper() + title[1:],
         "unit": unit.removesuffix("]"),
         "limits": [_limits(move, quantity, values, curve) for curve in range(count)],
-        "names": names_of_curves(plant, quantity) if count > 1 else [""],
+        "names": _names(plant, quantity) if count > 1 else [""],
         "first": int(peaks.argmax()),
         "values": packed(values),
     }
 
 
+def _names(plant: Plant, quantity: str) -> list[str]:
+    """What several curves of a quantity are called: joints, or tips."""
+    return list(plant.joint_names) if quantity == "angle" else names_of_curves(plant, quantity)
+
+
 def _limits(move: Move, quantity: str, values: Array, curve: int) -> list[float]:
     """The limits of a joint or a tip that its curves come near."""
-    if quantity == "power":
+    if quantity in ("power", "angle"):
         return []
     lines = [Line(plan, "") for plan in move.motions]
     return limits_in_sight(lines, quantity, values[:, curve].ravel(), curve)
@@ -361,7 +392,7 @@ def _content(
             {
                 "label": beside.label,
                 "kind": beside.kind,
-                "colour": _colour_name(look),
+                "colour": colour_name(look),
                 "mark": look.mark,
                 "points": beside.points,
             }
@@ -371,7 +402,7 @@ def _content(
     }
 
 
-def _colour_name(look: Look) -> str:
+def colour_name(look: Look) -> str:
     """What the page's styles call the colour of a look."""
     if look.colour in OTHERS:
         return f"other-{OTHERS.index(look.colour)}"
@@ -385,7 +416,7 @@ def _point(move: Move, choice: Choice) -> dict[str, Any]:
 
 def _place(move: Move, choice: Choice) -> dict[str, Any]:
     """A motion's place on the front, and its figures."""
-    figures = Figures.of(choice.plan, choice.residual, choice.energy)
+    figures = ShownFigures.of(choice.plan, choice.residual, choice.energy)
     return {
         "name": choice.name,
         "residual": choice.residual,

@@ -7,5 +7,6 @@ asked for.
 """
 
 from quietarm.loading import attach
+from quietarm.moved import MOVED_WITHIN
 
-__getattr__, __dir__, __all__ = attach(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__, MOVED_WITHIN["pictures"])

@@ -19,11 +19,12 @@ from .grammar import look as look
 from .grammar import looks as looks
 from .identified_figures import identification_figure as identification_figure
 from .motion import PAPER_PANELS as PAPER_PANELS
-from .motion import QUANTITIES_DRAWN as QUANTITIES_DRAWN
 from .motion import Line as Line
 from .motion import draw_quantity as draw_quantity
+from .motion import drawn_quantities as drawn_quantities
 from .motion import floor_figure as floor_figure
 from .motion import motion_figure as motion_figure
+from .panel import Panel as Panel
 from .robustness_figures import draw_motions as draw_motions
 from .robustness_figures import draw_robustness as draw_robustness
 from .robustness_figures import motions_figure as motions_figure

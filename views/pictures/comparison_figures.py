@@ -31,12 +31,12 @@ from quietarm.views.pictures.axes import (
 )
 from quietarm.views.pictures.grammar import FAINT, FLOOR, PAPER, Look, looks
 from quietarm.views.pictures.marked_points import mark_points
-from quietarm.views.report.methods import with_kind
+from quietarm.views.report.method_rows import with_kind
 from quietarm.views.report.words import title_of_picture
 from quietarm.views.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
-    from quietarm.studies.compare.front_comparison import Comparison, Group
+    from quietarm.studies.compare.front_comparison import Comparison, RunsOfMethod
 
 _END = 5.0
 """The end of small residuals reaches at least to this multiple of the least of all."""
@@ -238,7 +238,7 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _drawn(comparison: Comparison) -> Iterator[tuple[Group, Look, float]]:
+def _drawn(comparison: Comparison) -> Iterator[tuple[RunsOfMethod, Look, float]]:
     """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
     last = len(comparison.groups) - 1
     meanings = ["plan" if group.by_gradient else "search" for group in comparison.groups]

@@ -13,7 +13,7 @@ from quietarm.metaheuristics.score import shares_of_box
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import REST
 from quietarm.views.pictures.axes import (
@@ -29,7 +29,7 @@ from quietarm.views.pictures.grammar import PALE, PLAN, RED, Look, looks, varian
 from quietarm.views.pictures.marked_points import mark_points
 from quietarm.views.pictures.surface_figures import draw_parallel, draw_peak
 from quietarm.views.report.captions import caption_of_fronts, caption_of_polish
-from quietarm.views.report.methods import described, is_gradient
+from quietarm.views.report.method_rows import described, is_gradient
 from quietarm.views.report.words import spread_words, title_of_picture
 from quietarm.views.tips import tip_scale, tip_words
 

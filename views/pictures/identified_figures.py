@@ -14,7 +14,8 @@ from quietarm.machine import Recording
 from quietarm.machine.identify import Identified, Part
 from quietarm.machine.identify.fits.diagnosis import spectrum_of
 from quietarm.machine.identify.identification import curve_of
-from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.dimensions import EFFORT, words_of
+from quietarm.models.plant import FREQUENCY
 from quietarm.views.pictures.axes import new_figure
 from quietarm.views.pictures.grammar import BLUE, FAINT, GREY, INK, RED
 from quietarm.views.report.words import span_words
@@ -57,7 +58,8 @@ def identification_figure(machine: Identified, recordings: Sequence[Recording]) 
 
 def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[Recording]) -> None:
     """Measured and fitted, the residuals, and their spectrum."""
-    units = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": "N m"}
+    effort = EFFORT.of(machine.plant.joint)
+    units = {"tip": "m, or as recorded", "acceleration": "m/s²", "torque": effort}
     grid = row.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(2, 1))
     over = row.add_subplot(grid[0, 0])
     below = row.add_subplot(grid[1, 0], sharex=over)
@@ -77,8 +79,8 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
     )  # fmt: skip
     quantity = next(iter(recording.signals))
     joint = machine.plant.joint
-    unit = joint_unit(units[quantity], joint)
-    over.set_ylabel(f"{joint_label(quantity, joint)}\n[{unit}]", fontsize=8)
+    label = words_of(quantity).of(joint)
+    over.set_ylabel(f"{label}\n[{units[quantity]}]", fontsize=8)
     over.tick_params(labelbottom=False)
     gap = np.append(np.diff(time) > 3 * np.median(np.diff(time)), False)
     below.plot(time, np.where(gap, np.nan, 100 * residual / size), color=RED, linewidth=0.6)
@@ -101,17 +103,18 @@ def _draw_part(row: Any, machine: Identified, part: Part, recordings: Sequence[R
 
 
 def _frequencies(machine: Identified, part: Part) -> list[float]:
-    units = machine.plant.units()
-    return [value / (2 * pi) for name, value in part.values.items() if units[name] == "rad/s"]
+    kinds = machine.plant.parameter_kinds()
+    return [value / (2 * pi) for name, value in part.values.items() if kinds[name] == FREQUENCY]
 
 
 def _over_parts(row: Any, machine: Identified) -> None:
     """The identified parameters of every part, with both intervals."""
     axes = row.subplots(1, len(machine.estimates[:2]), squeeze=False)[0]
     units = machine.plant.units()
+    kinds = machine.plant.parameter_kinds()
     number = np.arange(1, len(machine.parts) + 1)
     for ax, estimate in zip(axes, machine.estimates):
-        hertz = units[estimate.parameter] == "rad/s"
+        hertz = kinds[estimate.parameter] == FREQUENCY
         size = 2 * pi if hertz else 1.0
         values = np.array([part.values[estimate.parameter] for part in machine.parts]) / size
         spread = (

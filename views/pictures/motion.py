@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.models import Plant
-from quietarm.models.joint_motion import ROTARY, joint_label
+from quietarm.models.dimensions import WATT, WAY, Unit, Words
+from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import Floor, Plan, evaluate_coefficients
 from quietarm.ocp.checks import instance, takes, unknown
-from quietarm.ocp.limits import QUANTITIES, Shares, unit_of, units_of_joints
+from quietarm.ocp.limits import QUANTITIES, Shares, units_of_joints
 from quietarm.views.pictures.axes import (
     TITLE,
     axes_or_new,
@@ -30,6 +31,7 @@ from quietarm.views.pictures.axes import (
 )
 from quietarm.views.pictures.grammar import AFTER_ARRIVAL, ARRIVAL, LIMIT, PLAN, Dash, Look, looks
 from quietarm.views.pictures.meaning import is_plain_cycloid, meaning_of
+from quietarm.views.pictures.panel import Panel, known_panels
 from quietarm.views.report.captions import caption_of_motions, verified_words
 from quietarm.views.report.words import raised, title_of_picture
 from quietarm.views.tips import tip_scale
@@ -43,22 +45,11 @@ _NUMBERS = 0.45
 _BESIDE_JOINTS = 0.7
 """Width of a panel of a joint, of its numbers and beside all panels [inch]: of five quantities
 the picture is 10.2 inches wide; in a page of 736 pixels its letters of 9 points are 9 high."""
-_LABELS = {
-    "angle": ("joint angle", "rad"),
-    "power": ("power", "W"),
-    **{quantity.name: (quantity.label, quantity.unit) for quantity in QUANTITIES.values()},
+_BESIDE_QUANTITIES: Mapping[str, tuple[Words, Unit]] = {
+    "angle": (Words("joint angle", "joint position"), WAY),
+    "power": (Words("power"), WATT),
 }
-QUANTITIES_DRAWN = (
-    "angle",
-    *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel),
-    "power",
-)
-"""What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
-_ALWAYS_DRAWN = (
-    "angle",
-    *(name for name, quantity in QUANTITIES.items() if quantity.always_drawn),
-)
-"""These are panels of every motion; others are where a task limits them."""
+"""What is drawn that a task does not limit."""
 PAPER_PANELS = ("angle", "speed", "deflection", "torque")
 """The panels of the paper's Figs 2 and 5, in their order."""
 
@@ -95,6 +86,23 @@ Motions = Sequence[Line] | Plan | Floor
 
 
 @interruptible
+def drawn_quantities() -> tuple[str, ...]:
+    """What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
+    return ("angle", *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel), "power")
+
+
+def _is_always_drawn(name: str) -> bool:
+    """Whether it is a panel of every motion; others are where a task limits them."""
+    return QUANTITIES[name].always_drawn if name in QUANTITIES else name == "angle"
+
+
+def _words_and_unit(quantity: str) -> tuple[Words, Unit]:
+    if quantity in _BESIDE_QUANTITIES:
+        return _BESIDE_QUANTITIES[quantity]
+    return QUANTITIES[quantity].label, QUANTITIES[quantity].unit
+
+
+@interruptible
 def draw_quantity(
     motions: Motions, quantity: str, ax: Axes | None = None, *, curve: int | None = None
 ) -> Axes:
@@ -105,7 +113,8 @@ def draw_quantity(
     motions : sequence of Line, Plan or Floor
         The motions; a plan alone is drawn over the plain cycloid of its task.
     quantity : str
-        A name in `QUANTITIES_DRAWN`: angle, speed, acceleration, jerk, deflection, torque or power.
+        A name of `drawn_quantities`: angle, speed, acceleration, jerk, deflection, torque or power;
+        or that of a `Panel` of one's own.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
     curve : int, optional
@@ -122,19 +131,25 @@ def draw_quantity(
     ValueError
         When there is no motion, or the quantity is not known.
     """
-    if quantity not in QUANTITIES_DRAWN:
-        raise ValueError(unknown("quantity", quantity, QUANTITIES_DRAWN))
+    if quantity not in (drawn := _drawn()):
+        raise ValueError(unknown("quantity", quantity, drawn))
     return _draw(lines_of(motions), quantity, axes_or_new(ax), curve)
+
+
+def _drawn() -> list[str]:
+    """What can be drawn, with the user's own panels."""
+    return [*drawn_quantities(), *known_panels(drawn_quantities())]
 
 
 def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = None) -> Axes:
     """Draw all curves of a quantity, or the one of a joint or a tip by its number."""
+    if quantity not in drawn_quantities():
+        return _draw_own(lines, known_panels(drawn_quantities())[quantity], ax)
     plant = lines[0].plan.task.plant
     drawn = list[Array]()
     title = heading_of_plant(plant, quantity, curve)
     for line in lines:
-        further = ("-.", "--", (0, (5, 1, 1, 1, 1, 1)))  # none dotted, as a limit is
-        other_styles: list[Dash] = [style for style in further if style != line.style]
+        other_styles = _other_styles(line)
         for i, values in enumerate(curves(line.plan, quantity)):
             if curve not in (None, i):
                 continue
@@ -144,9 +159,7 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
             label = line.label + of
             drawn.append(values)
             _draw_curve(ax, line, values, style, label)
-    durations = {line.plan.task.duration for line in lines}
-    for duration in durations:
-        draw_arrival(ax, duration)
+    durations = _draw_arrivals(ax, lines)
     for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
         label = "_" if k else "limit"  # once in the legend
         # a limit holds on the way, not for what comes after it
@@ -154,6 +167,35 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
                 linestyle=LIMIT.dash, label=label)  # fmt: skip
     if _cut_off_pulses(ax, lines, quantity, curve):
         title += ", pulses cut off"
+    return _named_over_time(ax, title)
+
+
+def _draw_own(lines: Sequence[Line], panel: Panel, ax: Axes) -> Axes:
+    """Draw a panel of the user's own."""
+    for line in lines:
+        styles = [line.style, *_other_styles(line)]
+        for i, (name, values) in enumerate(panel.curves(line.plan).items()):
+            label = f"{line.label}, {name}" if name else line.label
+            _draw_curve(ax, line, values, styles[i % len(styles)], label)
+    _draw_arrivals(ax, lines)
+    return _named_over_time(ax, panel.title)
+
+
+def _other_styles(line: Line) -> list[Dash]:
+    """Dashes of the further curves of a motion."""
+    further: tuple[Dash, ...] = ("-.", "--", (0, (5, 1, 1, 1, 1, 1)))  # none dotted, as a limit is
+    return [style for style in further if style != line.style]
+
+
+def _draw_arrivals(ax: Axes, lines: Sequence[Line]) -> set[float]:
+    """Draw when motions arrive; their durations [s]."""
+    durations = {line.plan.task.duration for line in lines}
+    for duration in durations:
+        draw_arrival(ax, duration)
+    return durations
+
+
+def _named_over_time(ax: Axes, title: str) -> Axes:
     ax.set_title(title, **TITLE)
     ax.set_xlabel("time [s]  (dashed: arrival)")
     ax.margins(x=0)
@@ -200,8 +242,7 @@ def names_of_curves(plant: Plant, quantity: str) -> list[str]:
 def _which(plant: Plant, quantity: str, curve: int) -> str:
     """Which joint or tip a curve is of, where there are several."""
     joints = plant.joint_names
-    of_joints = quantity in QUANTITIES and QUANTITIES[quantity].of_joints
-    if len(joints) > 1 and (of_joints or quantity == "angle"):
+    if len(joints) > 1 and _is_of_joints(quantity):
         return f", {joints[curve]}"
     return _which_tip(plant, curve) if curve else ""
 
@@ -216,21 +257,20 @@ def _which_tip(plant: Plant, curve: int) -> str:
 
 def heading(quantity: str, joint: str = ROTARY, tip_unit: str = "m") -> str:
     """A quantity with the unit that is shown: tip displacement [mm]."""
-    label, unit = _LABELS[quantity]
-    unit = tip_scale(tip_unit)[0] if unit == "m" else raised(unit_of(unit, joint, tip_unit))
-    return f"{joint_label(label, joint)} [{unit}]"
+    label, unit = _words_and_unit(quantity)
+    shown = tip_scale(tip_unit)[0] if unit.is_tip_way else raised(unit.of(joint, tip_unit))
+    return f"{label.of(joint)} [{shown}]"
 
 
 def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> str:
     """Return the heading of a plant's quantity: of all its joints, or of one by its number."""
-    of_joints = quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
-    kind = plant.joint if curve is None or not of_joints else plant.joint_kinds[curve]
+    kind = plant.joint if curve is None or not _is_of_joints(quantity) else plant.joint_kinds[curve]
     return heading(quantity, kind, plant.tip_unit)
 
 
 def scale_of(quantity: str, tip_unit: str = "m") -> float:
     """From the quantity's unit to the one that is shown."""
-    return tip_scale(tip_unit)[1] if _LABELS[quantity][1] == "m" else 1.0
+    return tip_scale(tip_unit)[1] if _words_and_unit(quantity)[1].is_tip_way else 1.0
 
 
 @interruptible
@@ -247,7 +287,8 @@ def motion_figure(
         Title of the picture; by default what the motions take and leave, how that is verified, and
         of which plant, move and limits.
     quantities : sequence of str, optional
-        Names in `QUANTITIES_DRAWN`; by default all but the power, and the jerk where it is limited.
+        Names of `drawn_quantities`; by default all but the power, the jerk where it is limited, and
+        every `Panel` of one's own.
         `PAPER_PANELS` are those of the paper.
 
     Returns
@@ -264,7 +305,12 @@ def motion_figure(
     lines = lines_of(motions)
     if quantities is None:
         limited = {limit.name for line in lines for limit in line.plan.task.limits}
-        quantities = [name for name in QUANTITIES_DRAWN if name in limited or name in _ALWAYS_DRAWN]
+        quantities = [
+            name for name in drawn_quantities() if name in limited or _is_always_drawn(name)
+        ]
+        own = known_panels(drawn_quantities())
+        plans = [line.plan for line in lines]
+        quantities += [name for name, panel in own.items() if all(map(panel.fits, plans))]
     if len(lines[0].plan.task.plant.joint_names) > 1 and len(quantities) > 1:
         return _figure_of_joints(lines, title, quantities)
     count = len(quantities)
@@ -309,9 +355,9 @@ def _figure_of_joints(
     """A row for each joint with what it does, and below them the tips, the power, the legend."""
     task = lines[0].plan.task
     names = task.plant.joint_names
-    of_joints = [name for name in quantities if name == "angle" or QUANTITIES[name].of_joints]
+    of_joints = [name for name in quantities if _is_of_joints(name)]
     others = [name for name in quantities if name not in of_joints]
-    below = [(name, curve) for name in others for curve in range(len(curves(lines[0].plan, name)))]
+    below = [(name, curve) for name in others for curve in _panels_below(lines[0].plan, name)]
     figure = new_figure(_BESIDE_JOINTS + _PANEL_OF_JOINT * max(len(of_joints), 3), 3.2 + len(names))
     grid = figure.add_gridspec(2, 1, height_ratios=(len(names), 1.7))
     upper = grid[0].subgridspec(len(names), max(len(of_joints), 1))
@@ -328,6 +374,16 @@ def _figure_of_joints(
     room.legend(*legend_of([*axes, *last]), loc="center left", fontsize=10, frameon=False)
     _head(figure, lines, title)
     return figure
+
+
+def _is_of_joints(quantity: str) -> bool:
+    """Whether a quantity has a curve for each joint."""
+    return quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
+
+
+def _panels_below(plan: Plan | Floor, quantity: str) -> range:
+    """The curves that have a panel each below the joints': of a panel of one's own all have one."""
+    return range(len(curves(plan, quantity)) if quantity in drawn_quantities() else 1)
 
 
 def _panels_of_joints(

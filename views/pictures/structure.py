@@ -23,7 +23,7 @@ _DOT = np.array([[0.0, 0.0], [1e-6, 0.0]])
 """A line of hardly any length [m], which with round ends shows as a disc."""
 
 
-class Part(NamedTuple):
+class DrawnPart(NamedTuple):
     """A line of a structure: its points, shape (frames, points, 2) [m], and its look."""
 
     points: Array
@@ -46,12 +46,12 @@ class Structure:
         return self._at_frames(self.trajectory.tips)
 
     @cached_property
-    def bent(self) -> list[Part]:
+    def bent(self) -> list[DrawnPart]:
         """What is drawn: discs, links and tips."""
         return self._parts(self._bent_bodies)
 
     @cached_property
-    def unbent(self) -> list[Part]:
+    def unbent(self) -> list[DrawnPart]:
         """The same without deflection."""
         return self._parts(self._bodies(0 * self.tips))
 
@@ -102,19 +102,19 @@ class Structure:
             list(plant.structure(float(angle), row.tolist())) for angle, row in zip(angles, tips)
         ]
 
-    def _parts(self, bodies_of_frames: list[list[Body]]) -> list[Part]:
-        parts = list[Part]()
+    def _parts(self, bodies_of_frames: list[list[Body]]) -> list[DrawnPart]:
+        parts = list[DrawnPart]()
         for bodies in zip(*bodies_of_frames):
             points = np.array([bent.points for bent in bodies])
             body = bodies[0]
             if body.ground:
-                parts.append(Part(points, FAINT, 1.5))
+                parts.append(DrawnPart(points, FAINT, 1.5))
                 continue
             if points.shape[1] == 1:
-                parts.append(Part(points + _DOT, INK, 16.0))
+                parts.append(DrawnPart(points + _DOT, INK, 16.0))
                 continue
             colour = INK if body.rigid and not body.tip else self.line.colour
-            parts.append(Part(points, colour, 9.0 if body.rigid else 5.0))
+            parts.append(DrawnPart(points, colour, 9.0 if body.rigid else 5.0))
         return parts
 
 

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp import Floor, Front, Plan, Polish
+from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.limits import CAPTION
 from quietarm.ocp.record import REST
 from quietarm.views.report.words import error_words
 from quietarm.views.tips import tip_words
@@ -23,7 +25,7 @@ _MOST_SAID = 3
 
 def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
     """What motions take and leave, by their names: "The plan takes 0.02 J and arrives at rest"."""
-    said = {name: (motion.energy, _ending(motion)) for name, motion in motions.items()}
+    said = {name: (motion.energy, _said(motion)) for name, motion in motions.items()}
     residuals = [motion.residual for motion in motions.values()]
     unit = next(iter(motions.values())).task.plant.tip_unit
     return _caption(said, max(residuals), unit)
@@ -41,6 +43,8 @@ def caption_of_judged(motions: Sequence[JudgedMotion], tip_unit: str) -> str:
         if judged.worst is not None:
             residuals.append(judged.worst.residual)
             words = f"{_left(judged.worst.residual, tip_unit)} in the worst case"
+        if judged.motion.candidate is not None:
+            words = ", ".join([words, *added_words(judged.motion.candidate, CAPTION)])
         said[name] = judged.motion.energy, words
     return _caption(said, max(residuals), tip_unit)
 
@@ -59,6 +63,11 @@ def _caption(said: Mapping[str, tuple[float, str]], most_left: float, tip_unit: 
     ]
     caption = "; ".join(reversed(sentences))
     return caption[:1].upper() + caption[1:]
+
+
+def _said(motion: Plan | Floor) -> str:
+    """How a motion ends, and figures of one's own."""
+    return ", ".join([_ending(motion), *added_words(motion.candidate, CAPTION)])
 
 
 def _named(name: str) -> str:

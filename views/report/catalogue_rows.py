@@ -11,9 +11,10 @@ from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
 from quietarm.ocp.checks import spelling, unknown
-from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.objectives import ENERGY, OBJECTIVES
-from quietarm.views.report.methods import GRADIENT_LABELS, label_of
+from quietarm.ocp.figures import ENERGY
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL
+from quietarm.ocp.objectives import known_objectives
+from quietarm.views.report.method_rows import GRADIENT_LABELS, label_of
 from quietarm.views.report.words import error_words, objective_words, window_words
 
 Row = tuple[str, str]
@@ -37,7 +38,8 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         rows = [(method, label_of(method)) for method in (*GRADIENT_LABELS, *PRESETS)]
         return "methods, with `quietarm list NAME` for the settings", rows
     if name == "objectives":
-        rows = [(objective_words([objective]), _objective(objective)) for objective in OBJECTIVES]
+        names = known_objectives()
+        rows = [(objective_words([name]), _objective(name)) for name in names]
         return "objectives, for --objectives of search, front and bench", rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
@@ -62,12 +64,12 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
 
 def _objective(name: str) -> str:
     """What an objective is."""
-    quantity = OBJECTIVES[name]
-    if quantity is not None:
-        return f"the largest {quantity.label} during the move [{quantity.unit}]"
-    unit = {RESIDUAL: "m", ENERGY: "J"}[name]
+    figure = known_objectives()[name]
+    if figure.quantity:
+        label = QUANTITIES[figure.quantity].label
+        return f"the largest {label} during the move [{figure.unit}]"
     words = {RESIDUAL: "F1, the largest tip displacement after arrival", ENERGY: "F2, of the drive"}
-    return f"{words[name]} [{unit}], of every front"
+    return f"{words[name]} [{figure.unit}], of every front"
 
 
 def _parameter(entry: Field[Any]) -> str:

@@ -7,11 +7,13 @@ from math import isfinite
 
 import numpy as np
 
-from quietarm.metaheuristics.objective.noise import belief_of
+from quietarm.metaheuristics.evaluation.noise import belief_of
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
-from quietarm.ocp import Candidate, CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
-from quietarm.ocp.front.curve import RESIDUAL_LIMIT
+from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
+from quietarm.ocp.joint_words import added_words
+from quietarm.ocp.limits import FRONT, QUANTITIES
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.robustness import worst_of
 from quietarm.views.report.plan_rows import worst_in_words
@@ -137,7 +139,7 @@ def _chosen_points(front: Front) -> list[str]:
     for objective in _peaks_of(front):
         quantity = objective.quantity
         least = min(front.points, key=lambda point, name=quantity: point.peaks[name])
-        chosen[f"least {quantity}"] = least
+        chosen[f"least {QUANTITIES[quantity].words.of(front.task.plant.joint)}"] = least
     if len(front.points) < 3:
         del chosen["knee"]
     width = max(15, *(len(name) + 1 for name in chosen))
@@ -184,10 +186,12 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
     tip_unit = front.task.plant.tip_unit
     words = f"{point.energy:.4g} J at {residual_words(point.residual, tip_unit)}"
     words += "".join(
-        f", {objective.quantity} {tip_words(point.peaks[objective.quantity], objective.unit)}"
+        f", {QUANTITIES[objective.quantity].words.of(front.task.plant.joint)} "
+        f"{tip_words(point.peaks[objective.quantity], objective.unit)}"
         for objective in _peaks_of(front)
     )
-    worst = worst_of(Candidate.of_profile(front.task, front.profile, point.coefficients))
+    words += "".join(f", {text}" for text in added_words(front.judged(point), FRONT))
+    worst = worst_of(front.judged(point))
     return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from quietarm.machine.identify import Estimate, Identified, Part, Prediction
 from quietarm.machine.identify.identified import is_modal
 from quietarm.models import Plant, file_of_plant
+from quietarm.models.plant import FREQUENCY
 from quietarm.views.report.words import span_words
 
 Row = tuple[str, str]
@@ -173,7 +174,7 @@ def _part(plant: Plant, part: Part) -> str:
 
 
 def _short(plant: Plant, name: str, value: float) -> str:
-    if plant.units()[name] == "rad/s":
+    if plant.parameter_kinds()[name] == FREQUENCY:
         return f"{value / (2 * pi):.5g} Hz"
     return f"{name} {value:.3g}"
 
@@ -188,7 +189,7 @@ def _estimate(plant: Plant, estimate: Estimate) -> list[str]:
     unit = plant.units()[estimate.parameter]
     size = 1.0
     words = "" if unit == "-" else f" {unit}"
-    if unit == "rad/s":
+    if plant.parameter_kinds()[estimate.parameter] == FREQUENCY:
         size = 2 * pi
         words = " Hz"
     share = (

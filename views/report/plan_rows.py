@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quietarm.models import Plant, RobotOnPath
-from quietarm.models.joint_motion import joint_label, joint_unit
+from quietarm.models.dimensions import ACCELERATION
 from quietarm.models.notes import about
 from quietarm.ocp import (
     CycloidPolynomial,
     Floor,
     JointSpline,
-    Motion,
     Plan,
     PointToPoint,
     ShapedCycloid,
     Worst,
 )
 from quietarm.ocp.candidate import Candidate
-from quietarm.ocp.joint_words import peak_words
-from quietarm.ocp.limits import QUANTITIES, Limit
+from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
+from quietarm.ocp.joint_words import figure_words
+from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_along import EXCESS
@@ -135,7 +135,7 @@ def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
     candidate = Candidate.of_free_motion(task.certain, free)
     ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
     jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
-    unit = joint_unit("rad/s^2", task.plant.joint)
+    unit = ACCELERATION.of(task.plant.joint)
     rows = [
         *_move_rows(task, candidate.motion),
         ("path", f"{free.steps + 1} points, {' to '.join(dict.fromkeys(ends))} ms apart"),
@@ -231,7 +231,7 @@ def _path_rows(task: PointToPoint) -> list[Row]:
     return way_rows(plant.robot, plant.path) if isinstance(plant, RobotOnPath) else []
 
 
-def _move_rows(task: PointToPoint, motion: Motion, residual_limit: float = 0.0) -> list[Row]:
+def _move_rows(task: PointToPoint, motion: Figures, residual_limit: float = 0.0) -> list[Row]:
     """The move and its limits, and which of them the motion breaks."""
     tip_unit = task.plant.tip_unit
     limits = [f"residual {_tip(task, residual_limit)}"] if residual_limit > 0 else []
@@ -258,19 +258,33 @@ def _figure_rows(
     if motion.residual < rest:  # nobody sees a difference
         where = "as wanted" if task.final else "at rest"
         residual = f"{where} (below {_tip(task, rest)})"
-    known = [name for name in QUANTITIES if motion.peak(name) < math.inf]  # a jump has no jerk
-    return [
-        (
-            "energy (F2)",
-            f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J){_warnings(task, 'energy')}",
-        ),
-        (
+    energy = f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"
+    rows = {
+        ENERGY: ("energy (F2)", f"{energy}{_warnings(task, ENERGY)}"),
+        RESIDUAL: (
             "residual (F1)",
-            f"{residual} {residual_place(task)}{_warnings(task, 'residual')}",
+            f"{residual} {residual_place(task)}{_warnings(task, RESIDUAL)}",
         ),
-        *((_peak_name(name, task), _peak(name, candidate, remedies)) for name in known),
-        ("overshoot", _way(motion.overshoot, task) if motion.overshoot > _ROUNDING else "none"),
-    ]
+    }
+    for figure in figures_in(REPORT):
+        if figure.name not in rows and figure.name in motion:  # a jump has no jerk
+            label = figure.label_on(task.plant)
+            rows[figure.name] = label, _figure(figure, candidate, remedies)
+    return list(rows.values())
+
+
+def _figure(figure: Figure, candidate: Candidate, remedies: Mapping[str, str]) -> str:
+    """A figure in words, with what is to be said of it."""
+    if figure.quantity:
+        return _peak(figure, candidate, remedies)
+    if figure.name == "overshoot":
+        size = candidate.overshoot
+        return _way(size, candidate.task) if size > _ROUNDING else "none"
+    plant = candidate.task.plant
+    value = candidate.figures[figure.name]
+    if figure.unit.is_tip_way:
+        return tip_words(value, plant.tip_unit)
+    return f"{figure.words(value, plant)}{_warnings(candidate.task, figure.name)}"
 
 
 def note_rows(plant: Plant) -> list[Row]:
@@ -283,10 +297,6 @@ def _warnings(task: PointToPoint, figure: str) -> str:
     return "".join(f"  (warning: {words})" for words in about(task.plant.notes, figure))
 
 
-def _peak_name(name: str, task: PointToPoint) -> str:
-    return joint_label(f"peak {name.replace('_', ' ')}", task.plant.joint)
-
-
 def _tip(task: PointToPoint, displacement: float) -> str:
     """A displacement of the tip in the unit that is shown."""
     return tip_words(displacement, task.plant.tip_unit)
@@ -297,15 +307,16 @@ def _way(size: float, task: PointToPoint) -> str:
     return f"{size:.3g} {unit_of_way(task.plant)}"
 
 
-def _peak(name: str, candidate: Candidate, remedies: Mapping[str, str]) -> str:
+def _peak(figure: Figure, candidate: Candidate, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
     task = candidate.task
-    motion = candidate.motion
-    peak = motion.peak(name)
-    if name == "deflection":
+    motion = candidate.figures
+    name = figure.quantity
+    if figure.unit.is_tip_way:
         small = task.plant.small_deflection
+        peak = motion[figure.name]
         words = _tip(task, peak)
-        if small is None or max(motion.peak_deflection, motion.residual) <= small:
+        if name != "deflection" or small is None or max(peak, motion.residual) <= small:
             return words
         return (
             f"{words}  (warning: beyond {_tip(task, small)}, up to which the plant's "
@@ -314,10 +325,10 @@ def _peak(name: str, candidate: Candidate, remedies: Mapping[str, str]) -> str:
     warnings = {"acceleration": _hard_acceleration, "jerk": _hard_jerk}
     too_hard = warnings[name](task, motion) if name in remedies else ""
     warning = f"  (warning: {too_hard}; {remedies[name]})" if too_hard else ""
-    return f"{peak_words(candidate, name)}{warning}{_warnings(task, name)}"
+    return f"{figure_words(candidate, figure)}{warning}{_warnings(task, name)}"
 
 
-def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:
+def _hard_acceleration(task: PointToPoint, motion: Figures) -> str:
     """How far the acceleration is above the plain cycloid's, where no limit is near."""
     plain = CycloidPolynomial(0).path([], task.start, task.target, task.duration)
     times = motion.peak_acceleration / abs(float(plain(task.duration / 4, order=2)))  # its peak
@@ -325,7 +336,7 @@ def _hard_acceleration(task: PointToPoint, motion: Motion) -> str:
     return "" if limited or times <= _HARD else f"{times:.2g} times the plain cycloid's"
 
 
-def _hard_jerk(task: PointToPoint, motion: Motion) -> str:
+def _hard_jerk(task: PointToPoint, motion: Figures) -> str:
     """How fast the acceleration changes, where no limit of the jerk is near."""
     limit = task.limit_of("jerk")
     ramp = motion.peak_acceleration / motion.peak("jerk")
@@ -336,7 +347,7 @@ def _hard_jerk(task: PointToPoint, motion: Motion) -> str:
     return f"at this rate the acceleration changes by its peak in {1e3 * ramp:.2g} ms"
 
 
-def _is_near(limit: Limit, motion: Motion) -> bool:
+def _is_near(limit: Limit, motion: Figures) -> bool:
     return limit.peak_of(motion) > _FAR * limit.size
 
 

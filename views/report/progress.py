@@ -96,12 +96,12 @@ def progress(total: int, console: Console) -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def count(total: int, what: str, console: Console) -> Iterator[Callable[[int, int], None]]:
-    """Show how many of many small pieces are done."""
+    """Show how many of many small pieces are done; a total of 0 is known with the first."""
     lines = Lines(console)
     columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), WORDS
-    working_on = f"working on {total} {what}"
+    working_on = f"working on {total or ''} {what}".replace("  ", " ")
     with bars(console, *columns) as shown, _said_after_a_while(working_on, console):
-        task = shown.add_task(what, total=total)
+        task = shown.add_task(what, total=total or None)
 
         def report(done: int, total: int) -> None:
             shown.update(task, completed=done, total=total)

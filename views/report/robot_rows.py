@@ -8,11 +8,12 @@ from math import tau
 import numpy as np
 
 from quietarm.models import GeometricPath, Robot
-from quietarm.models.joint_motion import joint_label, joint_unit, kind_of_joints
-from quietarm.models.robot.modes import modes_at, sag_at
-from quietarm.models.robot.reduction import MIDDLE
-from quietarm.models.robot.tables import modes_on, swings_of
-from quietarm.models.robot.urdf import PRISMATIC
+from quietarm.models.dimensions import DAMPING, EFFORT, INERTIA, STIFFNESS, WAY, Unit, words_of
+from quietarm.models.joint_motion import kind_of_joints
+from quietarm.models.robot.dynamics.modes import modes_at, sag_at
+from quietarm.models.robot.on_path.path_tables import modes_on, swings_of
+from quietarm.models.robot.on_path.reduction import MIDDLE
+from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
 
 Row = tuple[str, str]
@@ -85,15 +86,15 @@ def _joint_rows(robot: Robot) -> list[Row]:
         positions = (f"{name} at {robot.held_position(name):.4g}" for name in others)
         rows.append(("held", ", ".join(positions)))
     for entry, unit, of_urdf in (
-        ("rotor_inertia", "kg m^2", ""),
-        ("friction", "N m s/rad", "damping"),
-        ("coulomb", "N m", "friction"),
+        ("rotor_inertia", INERTIA, ""),
+        ("friction", DAMPING, "damping"),
+        ("coulomb", EFFORT, "friction"),
     ):
         rows.append((entry.replace("_", " "), _by_joint(robot, entry, unit, of_urdf)))
     return rows
 
 
-def _by_joint(robot: Robot, entry: str, unit: str, of_urdf: str) -> str:
+def _by_joint(robot: Robot, entry: str, unit: Unit, of_urdf: str) -> str:
     """Values by joint, and whether they are the URDF's."""
     values = getattr(robot, entry)
     if not values:
@@ -113,8 +114,8 @@ def _spring_rows(robot: Robot) -> list[Row]:
     rows = [
         (
             name,
-            f"{spring.stiffness:.5g} {joint_unit('N m/rad', robot.kind_of(joint))}, "
-            f"{spring.damping:.4g} {joint_unit('N m s/rad', robot.kind_of(joint))}",
+            f"{spring.stiffness:.5g} {STIFFNESS.of(robot.kind_of(joint))}, "
+            f"{spring.damping:.4g} {DAMPING.of(robot.kind_of(joint))}",
         )
         for joint, (name, spring) in zip(joints, springs.items())
     ]
@@ -130,7 +131,7 @@ def _spring_rows(robot: Robot) -> list[Row]:
 
 def _limit_rows(robot: Robot) -> list[Row]:
     ranges = [
-        f"{name} {lower:.4g} to {upper:.4g} {joint_unit('rad', robot.kind_of(name))}"
+        f"{name} {lower:.4g} to {upper:.4g} {WAY.of(robot.kind_of(name))}"
         for name, (lower, upper) in robot.positions.items()
     ]
     rows = [("narrower range", ", ".join(ranges))] if ranges else []
@@ -138,16 +139,16 @@ def _limit_rows(robot: Robot) -> list[Row]:
         return [*rows, ("limits", "none: give limits, urdf or a joint_limits.yaml")]
     for quantity, limits in robot.limits.items():
         kind = kind_of_joints([robot.kind_of(name) for name in limits])
-        label = joint_label(f"{quantity} limit", kind)
+        label = words_of(quantity).within("{} limit").of(kind)
         rows.append((label, _with_units(robot, limits, QUANTITIES[quantity].unit)))
     return rows
 
 
-def _with_units(robot: Robot, values: Mapping[str, float], unit: str) -> str:
-    """Values of joints with their units, given as of a rotary one: x 900 N, elbow 60 N m."""
+def _with_units(robot: Robot, values: Mapping[str, float], unit: Unit) -> str:
+    """Values of joints with their units: x 900 N, elbow 60 N m."""
     by_unit = dict[str, list[str]]()
     for name, value in values.items():
-        own = joint_unit(unit, robot.kind_of(name))
+        own = unit.of(robot.kind_of(name))
         by_unit.setdefault(own, []).append(f"{name} {value:.4g}")
     return "; ".join(f"{', '.join(listed)} {own}" for own, listed in by_unit.items())
 
@@ -177,7 +178,7 @@ def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
 def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
     """What to know of a robot's path: what its file had more, and how far its spline swings out."""
     rows = [("path", words) for words in path.remarks]
-    units = [joint_unit("rad", robot.kind_of(name)) for name in robot.joints]
+    units = [WAY.of(robot.kind_of(name)) for name in robot.joints]
     off = sorted(zip(path.off_straight.tolist(), units, robot.joints), reverse=True)
     seen = [(size, unit, name) for size, unit, name in off if size > _SEEN]
     if not seen:

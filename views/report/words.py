@@ -7,7 +7,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from quietarm.models import Plant
-from quietarm.models.joint_motion import joint_unit
+from quietarm.models.dimensions import WAY
 from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.limits import RESIDUAL
@@ -103,7 +103,7 @@ def move_of(task: PointToPoint) -> str:
 
 def unit_of_way(plant: Plant) -> str:
     """What a way is in: "rad" or "m" of a joint, "of the path" of joints that follow one."""
-    return "of the path" if plant.has_path else joint_unit("rad", plant.joint)
+    return "of the path" if plant.has_path else WAY.of(plant.joint)
 
 
 def note_lines(plant: Plant) -> list[str]:

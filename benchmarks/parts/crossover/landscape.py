@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 import quietarm as qa
 from quietarm.metaheuristics import NamedProblem
-from quietarm.ocp.front.curve import Curve
-from quietarm.ocp.planning.setup import Setup
+from quietarm.ocp.front.tradeoff import Tradeoff
+from quietarm.ocp.planning.request import Request
 
 from .problems import CENTRE_TERMS, Case
 from .tables import write_table
@@ -55,14 +55,14 @@ def local_searches(problem: NamedProblem, random: np.random.Generator) -> dict[s
         Forrest 1995), 1 in a funnel; 0 where all optima are one
     condition : largest by least curvature of the energy at the best one, by differences
     """
-    curve = Curve.begin(problem.task, problem.profile, Setup(bound=problem.bound))
+    tradeoff = Tradeoff.begin(Request(problem.task, problem.profile, bound=problem.bound))
     lower, upper = problem.profile.box(problem.bound)
     starts = STARTS if problem.profile.size <= CENTRE_TERMS else FEWER
     guesses = random.uniform(lower, upper, (starts, problem.profile.size))
-    programs = [curve.problem(WITHIN)] * starts
+    programs = [tradeoff.problem(WITHIN)] * starts
     solutions = [
         solution
-        for solution in curve.solver.solve(programs, list(guesses))
+        for solution in tradeoff.solver.solve(programs, list(guesses))
         if solution.status.solved
     ]
     if not solutions:

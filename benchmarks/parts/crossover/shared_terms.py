@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import quietarm as qa
-from quietarm.metaheuristics.gradient import gradient_front
+from quietarm.metaheuristics.methods.gradient_methods import gradient_front
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.models import Expression
 from quietarm.ocp.front.points import LEVELS, Mark
 from quietarm.ocp.profiles.cycloid import Cycloid
@@ -59,7 +60,7 @@ def front_of_every_number(task: qa.PointToPoint, terms: int, bound: float, point
         gradient_front(
             task,
             qa.CycloidPolynomial(number),
-            "epsilon",
+            NamedMethod("epsilon"),
             bound=SHARED * bound / number,
             seed=0,
             settings={"points": points},

@@ -12,7 +12,7 @@ from parts.population.equations import PROFILE, TASK, Values, numbers, peak_afte
 from parts.population.marches import march_arrays, march_compiled
 from parts.population.one_by_one import integrate, rates_in_floats, rates_in_numpy
 
-from quietarm.metaheuristics.objective.population import objectives_of, search_evaluator
+from quietarm.metaheuristics.evaluation.population import objectives_of, search_evaluator
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.mesh import Mesh
 

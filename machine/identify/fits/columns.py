@@ -20,7 +20,7 @@ from quietarm.ocp.simulation.collocation import GAUSS_NODES, GAUSS_WEIGHTS
 Array = NDArray[np.float64]
 
 
-class Columns(Protocol):
+class BasisColumns(Protocol):
     """The columns of a part of a recording.
 
     Attributes
@@ -39,7 +39,7 @@ class Columns(Protocol):
         ...
 
 
-class FreeDecay(Columns):
+class FreeDecay(BasisColumns):
     """The columns of a recording whose joint is at rest, the same for every signal."""
 
     driven = False
@@ -60,7 +60,7 @@ class FreeDecay(Columns):
         return parts(swings)[None], parts(by_p)[:, None]
 
 
-class Forced(Columns):
+class Forced(BasisColumns):
     """The columns of a recording whose joint moves, by the linear equations of the modes.
 
     Each eigenvalue is a filter of the joint's acceleration, exact but for the acceleration's course
@@ -166,7 +166,7 @@ def _over_a_step(value: complex, step: Any, nodes: Array) -> tuple[Any, Any, Any
     return np.exp(value * step), added, slope
 
 
-class Driven(Columns):
+class Driven(BasisColumns):
     """The columns of a recording whose joint moves: first what its motion does to the signals.
 
     By the plant's own equations, or where these are unknown but for the modes, by its linear ones:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.recordings.recording import noise_of, resolution_of
-from quietarm.machine.recordings.running import running_median
 
 Array = NDArray[np.float64]
 _STANDS_OUT = 14.0
@@ -83,8 +82,10 @@ def doubt_of(
 
 def _beside(power: Array) -> Array:
     """The noise's power in each bin, by the median of those beside it: two octaves or 40 bins."""
+    from scipy.ndimage import median_filter  # slow to load
+
     count = len(power)
-    local = running_median(power[1:], min(40, max(8, count // 2)))
+    local: Array = median_filter(power[1:], min(40, max(8, count // 2)), mode="nearest")
     high = float(np.median(power[count // 2 :]))
     beside = np.maximum(local, 0.2 * high)
     return np.append(local[0], beside) / np.log(2) + 1e-30 * power.max()

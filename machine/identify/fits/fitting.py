@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.least_squares import bounded_step, least_squares, variances_of
+from quietarm.machine.identify.fits.bounded_steps import bounded_step, variances_of
 from quietarm.machine.identify.fits.swing_model import SwingModel
 
 Array = NDArray[np.float64]
@@ -167,7 +167,8 @@ def _slopes(model: SwingModel, x: Array, weights: Array) -> tuple[Array, Array]:
         of_signal = root[:, None] * slopes[signal]
         columns = of_signal[:, first : first + width]
         by_p = of_signal[:, :count]
-        by_p = by_p - columns @ least_squares(columns, by_p)
+        of_columns, *_ = np.linalg.lstsq(columns, by_p, rcond=None)
+        by_p = by_p - columns @ of_columns
         gradient += by_p.T @ (root * residual[signal])
         curvature += by_p.T @ by_p
     return gradient, curvature

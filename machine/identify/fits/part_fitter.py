@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.columns import Columns, Driven, Forced, FreeDecay
+from quietarm.machine.identify.fits.columns import BasisColumns, Driven, Forced, FreeDecay
 from quietarm.machine.identify.fits.diagnosis import doubt_of, saturated
 from quietarm.machine.identify.fits.fitting import Fit, fit
 from quietarm.machine.identify.fits.response import response_of
@@ -99,7 +99,7 @@ class PartFitter:
         """
         whole = self.piece(part)
         piece = self.thinned(whole, samples) if thin and not part.saturated else whole
-        columns: Columns = FreeDecay(self.response, piece)
+        columns: BasisColumns = FreeDecay(self.response, piece)
         if part.hub:
             columns = self._with_joint(part, whole, piece)
         cosines = 0
@@ -112,7 +112,7 @@ class PartFitter:
                 model.counts = ~saturated(piece.values, model.fitted(part.vector))
         return model
 
-    def _with_joint(self, part: Part, whole: Recording, piece: Recording) -> Columns:
+    def _with_joint(self, part: Part, whole: Recording, piece: Recording) -> BasisColumns:
         """The columns of a piece whose joint moves as all samples of the part say."""
         ends = (part.begin, part.end)
         if ends not in self._splines:

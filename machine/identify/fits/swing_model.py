@@ -7,8 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.columns import Columns
-from quietarm.machine.identify.fits.least_squares import least_squares
+from quietarm.machine.identify.fits.columns import BasisColumns
 from quietarm.machine.recordings.recording import Recording
 
 Array = NDArray[np.float64]
@@ -24,7 +23,7 @@ class SwingModel:
     ----------
     recording : Recording
         The part of it, thinned to what the modes need.
-    columns : Columns
+    columns : BasisColumns
         What the signals consist of, by the parameters.
     cosines : int, optional
         How many of a slow motion, beside an offset and a slope.
@@ -38,7 +37,7 @@ class SwingModel:
     """
 
     def __init__(
-        self, recording: Recording, columns: Columns, cosines: int = 0, scaled: bool = True
+        self, recording: Recording, columns: BasisColumns, cosines: int = 0, scaled: bool = True
     ) -> None:
         self.time = recording.time
         self.values = recording.values
@@ -78,7 +77,7 @@ class SwingModel:
                 root = weights[signal] ** 0.5
                 free = root[:, None] * free
                 target = root * target
-            best[signal, self.fixed :] = least_squares(free, target)
+            best[signal, self.fixed :], *_ = np.linalg.lstsq(free, target, rcond=None)
         return best
 
     def fitted(self, p: Array, rows: NDArray[np.bool_] | None = None) -> Array:

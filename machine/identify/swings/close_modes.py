@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.columns import Columns, parts
+from quietarm.machine.identify.fits.columns import BasisColumns, parts
 from quietarm.machine.identify.fits.fitting import Fit, fit
 from quietarm.machine.identify.fits.swing_model import SwingModel
 from quietarm.machine.identify.swings.dry_friction import fit_dry
@@ -23,7 +23,7 @@ from quietarm.machine.recordings.recording import Recording, noise_of
 Array = NDArray[np.float64]
 
 
-class TwoDecays(Columns):
+class TwoDecays(BasisColumns):
     """The columns of two free decays: parameters are frequency [rad/s] and damping of each."""
 
     driven = False

@@ -11,7 +11,7 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.columns import Columns, parts
+from quietarm.machine.identify.fits.columns import BasisColumns, parts
 from quietarm.machine.identify.fits.fitting import Fit, fit
 from quietarm.machine.identify.fits.swing_model import SwingModel
 from quietarm.machine.recordings.recording import Recording
@@ -19,7 +19,7 @@ from quietarm.machine.recordings.recording import Recording
 Array = NDArray[np.float64]
 
 
-class DryDecay(Columns):
+class DryDecay(BasisColumns):
     """The columns of one decay: frequency [rad/s], damping, share of the amplitude lost a radian.
 
     The share is of the first amplitude, and of dry friction alone.

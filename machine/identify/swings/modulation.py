@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.fits.fitting import Fit, deviation_of, power_near
-from quietarm.machine.identify.fits.least_squares import least_squares
 
 Array = NDArray[np.float64]
 
@@ -54,5 +53,5 @@ def _nearest(columns: Array, values: Array) -> Array:
     """What of some columns is nearest to values."""
     size = np.linalg.norm(columns, axis=0)
     scaled = columns[:, size > 0] / size[size > 0]
-    share = least_squares(scaled, values)
+    share, *_ = np.linalg.lstsq(scaled, values, rcond=None)
     return scaled @ share

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from quietarm.machine.recordings.envelope import WINDOW, Envelope, envelope
 from quietarm.machine.recordings.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.machine.recordings.running import running_maximum, running_minimum
 
 Array = NDArray[np.float64]
 LEAST_PERIODS = 2.0
@@ -116,8 +115,12 @@ def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
     angle = recording.angle
     if angle is None:
         return np.ones(len(recording.time), bool)
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # slow to load
+
     size = max(3, round(1 / (frequency * recording.step)))
-    moved = running_maximum(angle, size) - running_minimum(angle, size)
+    highest: Array = maximum_filter1d(angle, size, mode="nearest")
+    lowest: Array = minimum_filter1d(angle, size, mode="nearest")
+    moved = highest - lowest
     return moved <= max(_flicker(angle), 0.03 * float(np.ptp(angle)))
 
 

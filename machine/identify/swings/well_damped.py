@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.recordings.recording import LEAST_ROWS, Recording, noise_of
-from quietarm.machine.recordings.running import running_mean
 
 Array = NDArray[np.float64]
 _REST = 0.1
@@ -29,12 +28,14 @@ _SMOOTH = 9
 
 def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
     """The rows of every swing that is damped well, and its frequency [Hz]."""
+    from scipy.ndimage import uniform_filter1d  # slow to load
+
     time, values = recording.time, recording.values
     noise = noise_of(values)
     column = int((np.ptp(values, axis=0) / np.maximum(noise, 1e-300)).argmax())
     rest = np.median(values[-max(LEAST_ROWS // 2, int(_REST * len(time))) :, column])
     size = min(_SMOOTH, max(1, len(time) // 100))
-    away = running_mean(values[:, column] - rest, size)
+    away: Array = uniform_filter1d(values[:, column] - rest, size, mode="nearest")
     least = max(_ABOVE * float(noise[column]) / size**0.5, 0.01 * float(np.abs(away).max()))
     # from one side to the other, without what is near the rest
     sides = np.where(np.abs(away) > least, np.sign(away), 0.0)

@@ -5,9 +5,9 @@ import pytest
 from pymoo.core.problem import Problem
 from pymoo.optimize import minimize
 
-from quietarm.metaheuristics.algorithms.building import directions
 from quietarm.metaheuristics.algorithms.mo_cma_es import MOCMAES, most_contributing
 from quietarm.metaheuristics.algorithms.moead_de import ScaledMOEAD
+from quietarm.metaheuristics.methods.building import directions
 
 ALGORITHMS = pytest.mark.parametrize(
     "build", [lambda: ScaledMOEAD(directions(30)), lambda: MOCMAES(30)], ids=["moead", "mo-cma-es"]

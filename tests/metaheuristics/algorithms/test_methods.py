@@ -7,7 +7,7 @@ import pytest
 from small_searches import HALF, LIMITED, SIXTH, assert_is_a_front, exactly
 
 from quietarm.metaheuristics import PRESETS, search
-from quietarm.metaheuristics.algorithms.presets import preset_of
+from quietarm.metaheuristics.methods.presets import preset_of
 
 SMALL = {"population": 8, "generations": 4, "bound": 0.3}
 SEARCHES = [name for name, preset in PRESETS.items() if not preset.is_function]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from quietarm.metaheuristics import PRESETS
-from quietarm.metaheuristics.algorithms import building
+from quietarm.metaheuristics.methods import building
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "methods.md"
 NUMBA = {"agemoea", "agemoea2"}  # pymoo compiles these for seconds as they load

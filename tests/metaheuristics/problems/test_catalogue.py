@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from quietarm.metaheuristics import PROBLEMS, problem_of
-from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.uncertainty import perturb_plant
 

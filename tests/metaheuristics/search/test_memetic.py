@@ -9,7 +9,7 @@ from quietarm import CycloidPolynomial
 from quietarm.metaheuristics import PRESETS, problem_of, search
 from quietarm.metaheuristics.algorithms.differences import Differences
 from quietarm.metaheuristics.algorithms.memetic import spread
-from quietarm.metaheuristics.objective.population import search_evaluator
+from quietarm.metaheuristics.evaluation.population import search_evaluator
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 from quietarm.metaheuristics.score import HYPERVOLUME, objectives
 

@@ -15,10 +15,10 @@ from small_searches import SIXTH, exactly
 
 import quietarm as qa
 from quietarm.metaheuristics import PRESETS, Job, problem_of
-from quietarm.metaheuristics.algorithms.building import directions
 from quietarm.metaheuristics.archive import Archive, entering
-from quietarm.metaheuristics.objective.stated_figures import check_figures
-from quietarm.metaheuristics.score import CORNER, Scale, hypervolume, share_of_box
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
+from quietarm.metaheuristics.methods.building import directions
+from quietarm.metaheuristics.score import CORNER, HYPERVOLUME, Scale, share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import CycloidPolynomial
 from quietarm.studies.bench.planned_jobs import jobs_of
@@ -120,13 +120,13 @@ def test_what_enters_is_what_nothing_earlier_dominates(rows, size):
 def test_hypervolumes_of_known_boxes():
     unit = Scale(np.zeros(3), np.ones(3), np.zeros((1, 3)), whole=CORNER**3)
     # a point at the ideal dominates all; one in the middle a cube; two the sum less what both do
-    assert hypervolume(np.zeros((1, 3)), unit) == pytest.approx(1.0)
-    assert hypervolume(np.full((1, 3), 0.6), unit) == pytest.approx(0.5**3 / 1.1**3)
+    assert HYPERVOLUME(np.zeros((1, 3)), unit) == pytest.approx(1.0)
+    assert HYPERVOLUME(np.full((1, 3), 0.6), unit) == pytest.approx(0.5**3 / 1.1**3)
     two = np.array([[0.1, 0.6, 0.6], [0.6, 0.1, 0.1]])
     volume = 1.0 * 0.5 * 0.5 + 0.5 * 1.0 * 1.0 - 0.5 * 0.5 * 0.5
-    assert hypervolume(two, unit) == pytest.approx(volume / 1.1**3)
+    assert HYPERVOLUME(two, unit) == pytest.approx(volume / 1.1**3)
     four = Scale(np.zeros(4), np.ones(4), np.zeros((1, 4)), whole=1.0)
-    assert hypervolume(np.full((1, 4), 0.1), four) == pytest.approx(1.0)
+    assert HYPERVOLUME(np.full((1, 4), 0.1), four) == pytest.approx(1.0)
     assert share_of_box(np.array([[1.0, 2.0, 3.0]]), (2.0, 4.0, 6.0)) == pytest.approx(1 / 8)
 
 

@@ -8,7 +8,7 @@ from math import pi
 import pytest
 
 from quietarm.metaheuristics import search
-from quietarm.metaheuristics.objective.stated_figures import check_figures
+from quietarm.metaheuristics.evaluation.stated_figures import check_figures
 from quietarm.models import ArmOnFlexibleLink
 from quietarm.ocp import Candidate, PointToPoint, Uncertainty
 

@@ -9,7 +9,7 @@ import pytest
 from bench_problems import NAME, called
 
 from quietarm.metaheuristics import Job, LostJobsError, run_jobs
-from quietarm.metaheuristics.user_method import digest_of
+from quietarm.metaheuristics.methods.user_method import digest_of
 
 BUDGET = 60
 

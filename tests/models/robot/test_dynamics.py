@@ -6,8 +6,8 @@ from robots import UR5_JOINTS, shipped_urdf, urdf_of
 
 import quietarm as qa
 from quietarm.models import Base
-from quietarm.models.robot.urdf import read_urdf
-from quietarm.models.robot.urdf_text import dynamics_of
+from quietarm.models.robot.urdf.read_urdf import read_urdf
+from quietarm.models.robot.urdf.urdf_text import dynamics_of
 
 pinocchio = pytest.importorskip("pinocchio")
 pytestmark = pytest.mark.slow

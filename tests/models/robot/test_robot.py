@@ -8,10 +8,11 @@ import pickle
 import numpy as np
 import pytest
 from robots import BAR, END, START, UR5_JOINTS, ur5_with_bar, urdf_of
+from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
 from quietarm.models import Base, Spring
-from quietarm.models.robot.tables import modes_on, swings_of
+from quietarm.models.robot.on_path.path_tables import modes_on, swings_of
 from quietarm.ocp.simulation.evaluator import Evaluator
 
 FILE = """
@@ -339,3 +340,15 @@ def test_rows_of_other_stiffness_move_as_the_robots_that_have_it():
         expected = Evaluator(other, profile, 16)(coefficients)
         assert both.arrival[:, place] == pytest.approx(expected.arrival[:, 0], rel=1e-9, abs=1e-12)
         assert both.energy[:, place] == pytest.approx(expected.energy[:, 0], rel=1e-9)
+
+
+def test_a_joint_whose_name_begins_as_the_beams_is_drawn_as_a_joint(tmp_path):
+    """The link before it is rigid in the picture, as with any other name."""
+    figures = []
+    for name in ("a", "beam 1"):
+        urdf = ARM.replace('joint name="a"', f'joint name="{name}"')
+        entries = ARM_FILE.replace("joints: [a, b]", f'joints: ["{name}", b]')
+        robot = qa.Robot.load(write_robot(tmp_path, urdf, entries))
+        plant = robot.along(qa.GeometricPath.line([0.0, 0.5], [0.5, 1.0]))
+        figures.append([body.points.shape for body in plant.structure(0.0, np.zeros(plant.tips))])
+    assert figures[0] == figures[1]

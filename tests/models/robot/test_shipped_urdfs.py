@@ -9,8 +9,8 @@ from robots import all_urdfs, urdf_of
 import quietarm as qa
 from quietarm.models import Base
 from quietarm.models.robot.frames import Frame, rotation_about
-from quietarm.models.robot.urdf import FIXED, PRISMATIC, Inertia, read_urdf
-from quietarm.models.robot.urdf_text import dynamics_of
+from quietarm.models.robot.urdf.read_urdf import FIXED, PRISMATIC, Inertia, read_urdf
+from quietarm.models.robot.urdf.urdf_text import dynamics_of
 
 pinocchio = pytest.importorskip("pinocchio")
 pytestmark = pytest.mark.slow

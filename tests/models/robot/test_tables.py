@@ -9,8 +9,8 @@ from robots import END, START, straight, ur5_with_bar
 
 import quietarm as qa
 from quietarm.models import Base, JointMotion
-from quietarm.models.robot.reduction import OF_MODES, OF_TORQUES, Reduction
-from quietarm.models.robot.tables import ACCURACY, tables_of
+from quietarm.models.robot.on_path.path_tables import ACCURACY, tables_of
+from quietarm.models.robot.on_path.reduction import OF_MODES, OF_TORQUES, Reduction
 
 BETWEEN = np.random.default_rng(5).uniform(-0.05, 1.05, 60)
 

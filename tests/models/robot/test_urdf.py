@@ -21,8 +21,8 @@ from two_links import (
 
 import quietarm as qa
 from quietarm.models.robot.robot_file import limits_of
-from quietarm.models.robot.urdf import read_urdf
-from quietarm.models.robot.urdf_text import dynamics_of, passed_over
+from quietarm.models.robot.urdf.read_urdf import read_urdf
+from quietarm.models.robot.urdf.urdf_text import dynamics_of, passed_over
 
 
 @pytest.mark.parametrize(("old", "new", "words"), [

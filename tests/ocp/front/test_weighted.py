@@ -7,7 +7,7 @@ import pytest
 from moves import CASES
 
 import quietarm as qa
-from quietarm.ocp.front import curve
+from quietarm.ocp.front import tradeoff
 
 POINTS = 10
 
@@ -62,14 +62,14 @@ def test_given_weights_are_used():
 def test_what_is_not_certified_has_the_place_of_its_minimum(monkeypatch):
     task, bound = CASES["arm"]
     within = qa.weighted_front(task, bound=bound, weights=[(1, 1)], starts=1).points[1]
-    certify = curve.certify
+    certify = tradeoff.certify
 
     def refuse(problems, solved, solver, tolerances, limits):
-        if tolerances == curve.OF_A_PLAN:  # an end
+        if tolerances == tradeoff.OF_A_PLAN:  # an end
             return certify(problems, solved, solver, tolerances, limits)
         return ["refused"] * len(solved)
 
-    monkeypatch.setattr(curve, "certify", refuse)
+    monkeypatch.setattr(tradeoff, "certify", refuse)
     front = qa.weighted_front(task, bound=bound, weights=[(1, 1)], starts=1)
     (failure,) = front.failures
     assert failure.reason == "refused"

@@ -8,7 +8,7 @@ import pytest
 
 import quietarm as qa
 import quietarm.ocp.candidate
-from quietarm.ocp import Verification
+from quietarm.ocp import Figures, Verification
 
 # Table 1, N = 2.
 TWO_TERMS = [3.347e-3, -1.697e-1]
@@ -35,8 +35,8 @@ def any_plan(request, tasks, solved):
         ((1.0, 1.0), (0.9989e-2, 1e-2), False),
     ],
 )
-def test_what_counts_as_verified(plan, energies, residuals, agrees):
-    motion = replace(plan.motion, energy=energies[1], residual=residuals[1])
+def test_what_counts_as_verified(energies, residuals, agrees):
+    motion = Figures({"energy": energies[1], "residual": residuals[1]})
     assert Verification.between(80, energies[0], residuals[0], motion).agrees == agrees
 
 

@@ -104,4 +104,4 @@ def test_bounds_of_one_direction_and_of_the_speed_hold(plants, start, target):
     room = np.minimum(0.4 - 0.05 * speed, 0.55 - 0.125 * speed) - torque
     assert -1e-8 <= room.min() < 0.01
     ends = found["acceleration"].min(), found["acceleration"].max()
-    assert plan.motion.ranges["acceleration"] == pytest.approx(ends, rel=1e-5)
+    assert plan.figures.range_of(QUANTITIES["acceleration"]) == pytest.approx(ends, rel=1e-5)

@@ -58,7 +58,7 @@ def test_a_move_without_a_plan_does_not_stop_the_others(plants):
 @pytest.mark.slow_after(1)
 def test_a_move_that_cvodes_does_not_confirm_has_a_status_and_no_figures(moves, monkeypatch):
     def refuse(problems, *others):
-        targets = [problem.transcription.task.target for problem in problems]
+        targets = [problem.task.target for problem in problems]
         return [SolverFailedError(f"refused at {target:.3g} rad") for target in targets]
 
     limited = [replace(task, speed_limit=4.0) for task in moves[:2]]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import quietarm as qa
-from quietarm.metaheuristics.gradient import multistart_front
+from quietarm.metaheuristics.methods.gradient_methods import multistart_front
 from quietarm.ocp import cross_check
 from quietarm.ocp.front.polish import polish_front
 from quietarm.ocp.solvers.choice import other_solver, stand_in, stated_solver

@@ -3,7 +3,7 @@
 import pytest
 
 from quietarm.ocp import CycloidPolynomial
-from quietarm.ocp.solvers.problem import Transcription
+from quietarm.ocp.solvers.problem import Program
 
 
 @pytest.fixture(params=["single link", "arm", "two links"])
@@ -16,6 +16,6 @@ def transcribe():
     """A task on its steps, in few words."""
 
     def of(task, *, terms=6, steps=48):
-        return Transcription(task, CycloidPolynomial(terms), steps)
+        return Program(task, CycloidPolynomial(terms), steps)
 
     return of

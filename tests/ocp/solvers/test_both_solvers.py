@@ -12,7 +12,7 @@ from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, TorqueSpeedLine
 from quietarm.ocp.simulation.evaluator import Evaluation
 from quietarm.ocp.solvers import ipopt as ipopt_module
 from quietarm.ocp.solvers.ipopt import Ipopt
-from quietarm.ocp.solvers.problem import NonlinearProgram, Scalarization
+from quietarm.ocp.solvers.problem import LEAST_ENERGY
 from quietarm.ocp.solvers.sqp import Sqp
 
 TERMS = 6
@@ -21,21 +21,25 @@ AT_REST = {RESIDUAL: 0.0}
 LINE = TorqueSpeedLine(((0.4, 0.0), (0.2, 3.5)))
 
 
-def _ask(limits, *others):
-    """What is asked for, limits by name as numbers or pairs."""
+def _ask(limits, bound=None, minimise=LEAST_ENERGY):
+    """What is asked for, limits by name."""
     made = [
         Limit.of_residual(size) if name == RESIDUAL else Limit(QUANTITIES[name], -size, size)
         for name, size in limits.items()
     ]
-    return Scalarization(tuple(made), *others)
+    return _asked(*made, bound=bound, minimise=minimise)
+
+
+def _asked(*limits, bound=None, minimise=LEAST_ENERGY):
+    return {"limits": limits, "bound": bound, "minimise": minimise}
 
 
 LIMITED = _ask({RESIDUAL: 2e-3})
 SOLVERS = Sqp(), Ipopt()
 
 
-def _solved(transcription, asked, solver=SOLVERS[0], start=PROFILE.plain, **settings):
-    (found,) = solver.solve([NonlinearProgram(transcription, asked)], [np.array(start)], **settings)
+def _solved(program, asked, solver=SOLVERS[0], start=PROFILE.plain, **settings):
+    (found,) = solver.solve([program.asking(**asked)], [np.array(start)], **settings)
     return found
 
 
@@ -77,8 +81,8 @@ def test_both_solvers_agree(link_and_arm, name, what):
     else:
         assert _true(steps, ipopt) == pytest.approx(_true(steps, sqp), rel=1e-6)
     for found in (sqp, ipopt):
-        assert np.abs(found.coefficients).max() <= (ask.bound or np.inf)
-        for limit in ask.limits:
+        assert np.abs(found.coefficients).max() <= (ask["bound"] or np.inf)
+        for limit in ask["limits"]:
             assert limit.keeps(found.peaks[limit.name], 1e-6)
     for quantity, price in sqp.shadow_prices.items():
         assert ipopt.shadow_prices[quantity] == pytest.approx(price, rel=1e-3)
@@ -96,18 +100,18 @@ def test_both_solvers_keep_limits_that_differ_by_direction_or_speed(tasks, trans
     task = replace(tasks["arm"], **given)
     (limit,) = task.limits
     steps, rest = transcribe(task, steps=96), Limit.of_residual(0.0)
-    free = _solved(steps, Scalarization((rest,)))
-    sqp, ipopt = (_solved(steps, Scalarization((rest, limit)), one) for one in SOLVERS)
+    free = _solved(steps, _asked(rest))
+    sqp, ipopt = (_solved(steps, _asked(rest, limit), one) for one in SOLVERS)
     assert not limit.keeps(free.peaks[name])
     assert _true(steps, ipopt) == pytest.approx(_true(steps, sqp), rel=1e-6)
     for found in (sqp, ipopt):
         assert found.peaks[name] == pytest.approx(limit.size, rel=1e-6)
         assert found.energy > free.energy
     assert ipopt.shadow_prices[name] == pytest.approx(sqp.shadow_prices[name], rel=1e-3)
-    wider = _solved(steps, Scalarization((rest, limit.tightened(1 / 1.005))))
+    wider = _solved(steps, _asked(rest, limit.tightened(1 / 1.005)))
     price = (sqp.energy - wider.energy) / (0.005 * limit.size)
     assert sqp.shadow_prices[name] == pytest.approx(price, rel=0.05)
-    least = [_solved(steps, Scalarization((rest,), None, {name: 1.0}), one) for one in SOLVERS]
+    least = [_solved(steps, _asked(rest, minimise={name: 1.0}), one) for one in SOLVERS]
     assert least[1].peaks[name] == pytest.approx(least[0].peaks[name], rel=1e-6)
     assert least[0].peaks[name] < limit.size
 
@@ -122,7 +126,7 @@ def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
         (limited, _ask(AT_REST, None, {"torque": 1.0})),
         (free, _ask({RESIDUAL: 5e-3}, box)),
     ]
-    problems = [NonlinearProgram(*one) for one in asks]
+    problems = [program.asking(**asked) for program, asked in asks]
     together = Sqp().solve(problems, [PROFILE.plain] * len(problems))
     for one, found in zip(asks, together, strict=True):
         alone = _solved(*one)
@@ -206,7 +210,7 @@ def test_the_log_of_either_solver_can_be_shown(link_and_arm, capfd, solver, colu
 
 def test_how_a_start_ended_is_said_truly(link_and_arm):
     steps, _, box = link_and_arm["arm"]
-    problem = NonlinearProgram(steps, _ask(AT_REST, box))
+    problem = steps.asking(**_ask(AT_REST, box))
     found = Sqp().solve([problem] * 4, [PROFILE.plain] * 4, groups=[0] * 4)
     assert [one.status for one in found].count(SolveStatus.SUPERSEDED) == 3
     assert all("another start" in one.reason for one in found if not one.status.solved)

@@ -13,6 +13,7 @@ import pytest
 
 from quietarm.ocp.solvers.funnel import SHARP, Course, End, minimise
 from quietarm.ocp.solvers.quadratic import Model
+from quietarm.ocp.solvers.sqp import Sqp
 
 INF = np.inf
 
@@ -46,7 +47,7 @@ class Problem:
 
     def solved(self, starts, **settings):
         starts = np.atleast_2d(np.array(starts, dtype=float))
-        course = Course(settings.pop("widths", SHARP), settings.pop("reach", Course().reach))
+        course = Course(Sqp(), settings.pop("widths", SHARP), settings.pop("reach", 0.25))
         programs = SimpleNamespace(
             evaluate=self.evaluate,
             equalities=self.function.size1_in(1),
@@ -54,7 +55,7 @@ class Problem:
             lower=np.tile(self.lower, (len(starts), 1)),
             upper=np.tile(self.upper, (len(starts), 1)),
         )
-        return minimise(programs, starts, course=course, **settings)
+        return minimise(programs, starts, course, **settings)
 
     def objective(self, found):
         rows = np.arange(len(found.x))

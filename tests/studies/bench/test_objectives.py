@@ -7,7 +7,7 @@ import pytest
 from bench_problems import NAME
 
 from quietarm.metaheuristics import Job, NamedProblem, problem_of, run_jobs
-from quietarm.metaheuristics.run_files import is_sealed
+from quietarm.metaheuristics.run_files import JOB
 from quietarm.metaheuristics.score import filled, objectives
 from quietarm.ocp import epsilon_front
 from quietarm.studies.bench.planned_jobs import jobs_of, problems_of, with_references
@@ -51,7 +51,7 @@ def runs(problem, tmp_path_factory):
 def test_every_run_has_all_objectives_and_is_measured_by_them(runs, problem):
     for job, front in runs.items():
         assert front.objectives == THREE
-        assert is_sealed(front)
+        assert JOB in front.record.settings
         scores = problem.reference().scores(objectives(front))
         assert 0 < scores["hypervolume"] < 1.1
         assert filled(front).shape[1] == 3

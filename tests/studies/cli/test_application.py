@@ -9,7 +9,7 @@ from lines import MOVE
 from quietarm.metaheuristics import problem_of
 from quietarm.models import Plant, SingleLinkManipulator, load_plant_file
 from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
-from quietarm.studies.cli.application import COMMANDS, HEIRS, command_of
+from quietarm.studies.cli.application import COMMANDS, command_of
 from quietarm.studies.cli.options import Command
 
 CRANE = "--target 1 --duration 3"
@@ -26,13 +26,6 @@ def test_every_command_has_help_with_what_all_commands_take(done):
         out = done(f"{name} --help")
         assert out.startswith(f"Usage: quietarm {name} ")
         assert all(option in out for option in ("--plant-file", "--quiet", "--help"))
-
-
-def test_heirs_are_there():
-    for heir in HEIRS.values():
-        name, *words = heir.split()
-        options = {opt for one in command_of(name).params for opt in one.opts}
-        assert {word for word in words if word.startswith("--")} <= options
 
 
 # Plants of one's own, parameters

@@ -11,11 +11,11 @@ from saved_files import edit
 
 import quietarm as qa
 from quietarm.models import LinearAxis, SingleLinkManipulator
-from quietarm.ocp import CycloidPolynomial, Front, Plan, PointToPoint, evaluate_coefficients
+from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
+from quietarm.studies.answers.open_by_hand import open_file
 from quietarm.studies.compare import compare_plans
-from quietarm.studies.explore.move import Explored
-from quietarm.studies.explore.start_page import open_file, open_plant
 from quietarm.studies.sweep.move_grid import Axis, MoveGrid
+from quietarm.views.explore.by_hand import MoveByHand, open_plant
 
 CRANE = "linear-axis --set omega1=0.6283 --set zeta1=0.002 --target 8 --duration 16 --quiet"
 WITHIN = "within 20 s"  # two periods of 0.6283 rad/s
@@ -143,9 +143,9 @@ def test_the_page_measures_another_plant_within_its_own_window(folder):
     crane = SingleLinkManipulator(omega=0.6283)
     begun = open_plant(link)
     assert begun.choose_plant(crane).task.residual_window == pytest.approx(EXACTLY, rel=1e-12)
-    begun.plan.save("plan.json")
+    begun.motion.save("plan.json")
     loaded = open_file(Path("plan.json"))
     assert loaded.choose_plant(crane).task == begun.choose_plant(crane).task
     given = replace(begun.task, residual_window=3.0)
-    explored = Explored(evaluate_coefficients(given, [0.0] * 6, profile=CycloidPolynomial()))
+    explored = MoveByHand.of_plan(evaluate_coefficients(given, [0.0] * 6))
     assert explored.choose_plant(crane).task.residual_window == 3.0

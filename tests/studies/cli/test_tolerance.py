@@ -23,9 +23,9 @@ def seen(monkeypatch):
     by_solver = {}
     minimise = sqp.minimise
 
-    def by_sqp(*given, course, **settings):
-        by_solver.setdefault("sqp", set()).add(course.tolerance)
-        return minimise(*given, course=course, **settings)
+    def by_sqp(programs, x, course, **settings):
+        by_solver.setdefault("sqp", set()).add(course.solver.tolerance)
+        return minimise(programs, x, course, **settings)
 
     monkeypatch.setattr(sqp, "minimise", by_sqp)
     for name, module in (("ipopt", ipopt), ("floor", program)):

@@ -1,18 +1,15 @@
 """A profile of a user's own, in one file: the one of docs/extend.md, through four commands."""
 
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from pages import blocks
+from pages import shown_file
 
 from quietarm.ocp import Front, Plan
 
-ROOT = Path(__file__).parents[3]
-PACKAGES = "quietarm", "models", "ocp", "metaheuristics", "studies"
-(PROFILE,) = blocks("extend", "python")
+pytestmark = pytest.mark.usefixtures("what_is_made_up_is_forgotten")
+
+PROFILE = shown_file("extend", "minimum_jerk.py")
 MOVE = "--target 60deg --duration 3 --profile minimum-jerk --quiet"
 LEAST_JERK_SPEED = 15 / 8
 """Largest speed of the motion of least jerk over the mean: 30 s^2 (1 - s)^2 at s = 1/2."""
@@ -43,6 +40,7 @@ def check_answers(span, duration):
     assert least.motion.peak_speed == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.slow  # of a profile alone: tests/recipes
 def test_a_profile_beside_a_plant_in_the_plant_file(done, call, refused, crane_file):
     crane_file.write_text(f"{crane_file.read_text()}\n\n{PROFILE}")
     for line in lines(f"{MOVE} --plant-file crane.py"):
@@ -83,33 +81,3 @@ def test_workers_know_the_profile_of_a_plant_file(call, crane_file):
     saved = sorted(Path().glob("found*.json"))
     assert len(saved) == 2
     assert {Front.load(file).profile.amount for file in saved} == {"3 terms"}
-
-
-@pytest.mark.slow
-def test_a_profile_in_a_file_of_the_folder_of_profiles(folder):
-    checkout = folder / "checkout"
-    for name in PACKAGES:
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / name, checkout / name, symlinks=True, ignore=ignored)
-    file = checkout / "ocp" / "profiles" / "minimum_jerk.py"
-    file.write_text(PROFILE)
-    move = f"single-link {MOVE}"
-    loads = ["Front.load('front.json')", "Plan.load('least.json')"]
-    program = [
-        "import shlex, sys",
-        f"sys.path.insert(0, {str(checkout)!r})",
-        "import quietarm as qa",
-        "from quietarm.studies.cli import main",
-        "def run(line):",
-        "    try:",
-        "        main(shlex.split(line))",
-        "    except SystemExit as ended:",
-        "        assert not ended.code, line",
-        *(f"run({line!r})" for line in lines(move)),
-        f"print(qa.__file__, *(answer.profile.amount for answer in (qa.{', qa.'.join(loads)})))",
-    ]
-    command = [sys.executable, "-W", "error", "-c", "\n".join(program)]
-    ran = subprocess.run(command, capture_output=True, text=True, timeout=600)
-    assert (ran.returncode, ran.stderr) == (0, "")
-    last = ran.stdout.splitlines()[-1]
-    assert last == f"{checkout / 'quietarm' / '__init__.py'} 4 terms 3 terms"

@@ -109,10 +109,10 @@ def test_files_of_robots(call, robot, name, text, line):
 @pytest.mark.parametrize(
     ("file", "answer"),
     [
-        ("2026-11-27-plans/plan.json", qa.Plan),
-        ("2026-11-27-plans/floor.json", Floor),
-        ("2026-11-27/front.json", qa.Front),
-        ("2026-11-27/machine.json", Identified),
+        ("2.0.0/plan.json", qa.Plan),
+        ("2.0.0/floor.json", Floor),
+        ("2.0.0/front.json", qa.Front),
+        ("2.0.0/machine.json", Identified),
     ],
 )
 def test_answers(tmp_path, file, answer):

@@ -22,7 +22,7 @@ def definition(solver):
 def test_a_dataset_states_its_solver():
     stated = typed(plain(definition(OWN)), Definition)
     assert stated == definition(OWN)
-    assert stated.settings.solves == OWN
+    assert stated.settings.solver == OWN
     names = stated.difference(definition(qa.Sqp()))
     assert set(names.split(", ")) == {"solver", "solver_tolerance", "solver_iterations"}
 

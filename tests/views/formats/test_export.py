@@ -186,6 +186,24 @@ def test_the_tips_of_a_robust_plan_are_named_by_their_scenarios(tmp_path):
     assert "tip_mm_frequency_minus_5" in loadmat(tmp_path / "move.mat")
 
 
-def test_a_film_is_not_written_as_a_table(plan, tmp_path):
-    with pytest.raises(ValueError, match=r"is a film; make it by animate\(plan\)"):
-        export_plan(plan, tmp_path / "move.gif")
+def test_python_writes_films_and_pages_as_the_command_does(plan, tmp_path):
+    written = export_plan(plan, tmp_path / "move.gif", width=200, rate=4)
+    assert written == [tmp_path / "move.gif"]
+    assert written[0].read_bytes().startswith(b"GIF8")
+    export_plan(plan, tmp_path / "move.html")
+    assert (tmp_path / "move.html").read_text().lower().startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize(
+    ("settings", "why"),
+    [
+        ({"columns": "time"}, "columns is for csv, mat, not for ros"),
+        ({"rats": 5.0}, r"unknown setting of ros 'rats'; did you mean 'rate'\?"),
+        ({"rate": "often"}, "rate is 'often'; give a number in Hz"),
+        ({"joint": 3}, "joint is 3; give a text"),
+    ],
+)
+def test_a_setting_that_a_format_does_not_have_is_refused(plan, tmp_path, settings, why):
+    with pytest.raises(ValueError, match=why):
+        export_plan(plan, tmp_path / "move.yaml", **settings)
+    assert not list(tmp_path.iterdir())

@@ -18,11 +18,11 @@ from rich.console import Console
 from scipy.io import loadmat
 
 import quietarm as qa
-from quietarm.models.robot.urdf import read_urdf
-from quietarm.ocp.escapes import c_comment, csv_table, markdown, one_line, printable
-from quietarm.studies.explore.move import Explored
-from quietarm.studies.explore.page import _facts
+from quietarm.models.robot.urdf.read_urdf import read_urdf
+from quietarm.ocp.escapes import c_comment, csv_table, markdown, one_line, printable, script_json
 from quietarm.views import export_plan
+from quietarm.views.explore.by_hand import MoveByHand
+from quietarm.views.explore.live_page import LivePage
 from quietarm.views.page.trade_off import trade_off
 from quietarm.views.report import Report, show, show_facts
 from quietarm.views.report.plan_rows import plan_rows
@@ -170,12 +170,32 @@ def test_the_page_to_drag_is_one_script_whose_data_hold_the_names(plan):
     assert not {"img", "b", "h1 "} & {tag for tag, _ in page.elements}
 
 
-def test_a_notebook_and_the_page_to_explore_show_texts_alone(plan):
-    for text in (plan._repr_html_(), _facts(Explored(plan))):
-        page = Page(text)
-        assert {tag for tag, _ in page.elements} <= {"table", "tr", "td", "th", "div", "b"}
-        assert not any(attributes for _, attributes in page.elements)
-        assert "\u202e" not in text
+def test_the_page_alive_is_one_script_and_its_answers_are_data(plan):
+    live = LivePage(MoveByHand.of_plan(plan))
+    page = Page(live.html())
+    scripts = [attributes for tag, attributes in page.elements if tag == "script"]
+    assert scripts == [{"type": "application/json", "id": "data"}, {}]
+    names = json.loads(page.of("script")[0])["moves"][0]["panels"]["angle"]["names"]
+    assert names == [printable(name) for name in NAMES]
+    assert not {"img", "b", "h1 "} & {tag for tag, _ in page.elements}
+    lines = {
+        what: script_json(live.answer(what, b"{}", lambda done, total: None))
+        for what in ("motion", "rows")
+    }
+    assert not set("<>&\n\u202e") & set("".join(lines.values()))
+    answer = json.loads(lines["motion"])
+    assert answer["move"]["title"].startswith(printable(LABEL))
+    # and the server knows the name again
+    asked = json.dumps({"plant": answer["fields"]["shown"]["plant"]}).encode()
+    assert live.answer("motion", asked, lambda done, total: None)["move"]["points"]
+
+
+def test_a_notebook_shows_texts_alone(plan):
+    text = plan._repr_html_()
+    page = Page(text)
+    assert {tag for tag, _ in page.elements} <= {"table", "tr", "td", "th", "div", "b"}
+    assert not any(attributes for _, attributes in page.elements)
+    assert "\u202e" not in text
 
 
 def test_a_terminal_gets_no_orders_and_as_many_lines_as_without_them(plan):

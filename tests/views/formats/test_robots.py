@@ -18,12 +18,17 @@ from scipy.io import loadmat
 import quietarm as qa
 from quietarm.views import animate
 from quietarm.views.formats.between_rows import interpolation_note, residual_between
+from quietarm.views.formats.csv_rows import CsvRows
 from quietarm.views.formats.formats import export_plan
-from quietarm.views.formats.move_tables import csv_text
 from quietarm.views.pictures import Line
 from quietarm.views.pictures.structure import structures_of
 
 LIMIT = {"elbow_joint": 25.0}
+
+
+def csv_text(plan, columns, rate):
+    """A table as text."""
+    return CsvRows().content(plan, columns=columns, rate=rate)
 
 
 @lru_cache

@@ -1,31 +1,32 @@
 """The page to drag along a front, in headless Chromium; without one here it is not tested."""
 
 import json
-import shutil
 from contextlib import suppress
 from math import pi
 from pathlib import Path
 
 import numpy as np
 import pytest
+from in_browser import (
+    CROSSED,
+    DESK,
+    IN_CHROMIUM,
+    PHONE,
+    api,
+    arm,
+    curves,
+    knob,
+    number,
+    still,
+    swipe,
+)
 
 from quietarm.models import ArmOnFlexibleLink, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, epsilon_front, evaluate_coefficients
+from quietarm.studies.reproduce.paper import paper_points
 from quietarm.views import trade_off
 
-api = pytest.importorskip("playwright.sync_api")
-CHROMIUM = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
-)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here"),
-]
-GUARD = 240
-"""Seconds after which what does not come has hung, on any machine."""
-api.expect.set_options(1e3 * GUARD)
-DESK = {"viewport": {"width": 1400, "height": 900}}
-PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+pytestmark = IN_CHROMIUM
 
 
 @pytest.fixture(scope="module")
@@ -41,66 +42,18 @@ def fronts():
 @pytest.fixture(scope="module")
 def file(fronts, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "front.html"
-    trade_off(fronts).save(path)
+    trade_off(fronts, known_points=paper_points).save(path)
     return path
 
 
-@pytest.fixture(scope="module")
-def chromium():
-    with api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM)
-        yield browser
-        browser.close()
-
-
 @pytest.fixture
-def opened(chromium, file):
-    """Open the page; at the end it has said nothing, failed nowhere and asked for nothing else."""
-    contexts = []
-    wrong = []
+def opened(open_page, file):
+    """Open the page, or one around it."""
 
-    def open_page(address=None, **options):
-        contexts.append(chromium.new_context(**options))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(1e3 * GUARD)
-        page.on("console", lambda message: wrong.append(message.text))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("request", lambda request: wrong.append(request.url))
-        page.goto(address or file.as_uri())
-        return page
+    def at(address=None, **options):
+        return open_page(address or file.as_uri(), **options)
 
-    yield open_page
-    assert [words for words in wrong if not words.startswith(("file:", "data:"))] == []
-    for context in contexts:
-        context.close()
-
-
-def still(page, time=1.0):
-    """Stop the clock at a time."""
-    api.expect(page.locator("#clock")).not_to_be_empty()
-    page.evaluate("time => { play(false); seek(time); }", time)
-
-
-def arm(page):
-    """What is drawn of the structure."""
-    return page.evaluate(
-        "[...document.querySelectorAll('#scene path')].map(x => x.outerHTML).join()"
-    )
-
-
-def curves(page):
-    return page.evaluate(
-        "[...document.querySelectorAll('#panels path')].map(x => x.outerHTML).join()"
-    )
-
-
-def knob(page):
-    box = page.locator("#handle .knob").bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
-def number(page):
-    return int(page.get_attribute("#handle", "aria-valuenow"))
+    return at
 
 
 def test_the_mouse_drags_along_the_front_and_the_arm_follows(opened):
@@ -172,24 +125,14 @@ def test_a_finger_drags_scrolls_and_taps_on_a_phone_of_390_pixels(opened):
     page = opened(**PHONE, color_scheme="dark")
     still(page)
     assert page.evaluate("document.documentElement.scrollWidth") == 390
-    finger = page.context.new_cdp_session(page)
-
-    def swipe(x, y, across, up):
-        points = [{"x": x + across * k / 12, "y": y - up * k / 12} for k in range(13)]
-        finger.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": points[:1]})
-        for point in points[1:]:
-            finger.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": [point]})
-            page.wait_for_timeout(16)
-        finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-
     before = arm(page)
-    swipe(*knob(page), 90, -15)
+    swipe(page, *knob(page), 90, -15)
     dragged = number(page)
     assert dragged > 4
     assert arm(page) != before
     box = page.locator("#front").bounding_box()
     x, y = box["x"] + 0.7 * box["width"], box["y"] + 0.6 * box["height"]
-    swipe(x, y, 0, 150)
+    swipe(page, x, y, 0, 150)
     page.wait_for_function("scrollY > 50")
     assert number(page) == dragged
     page.evaluate("scrollTo(0, 0)")
@@ -388,50 +331,6 @@ def test_the_axis_ends_beyond_all_marks_and_the_key_has_the_marks_of_the_front(o
     key = page.inner_text("#key")
     assert "gradient (epsilon constraint)" in key
     assert "the paper's best (6 terms)" in key
-
-
-# Of every picture the words that are cut, that other words cover, or that a curve or a mark
-# crosses; lines of a grid are behind the words, which have a halo.
-CROSSED = """() => {
-    const boxOf = (element) => {
-        const {left, right, top, bottom} = element.getBoundingClientRect();
-        return {left, right, top: top + 2.5, bottom: bottom - 2.5};
-    };
-    const overlap = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
-        && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
-    const isSeen = (line) => {
-        const {stroke, fill} = getComputedStyle(line);
-        const shows = (paint) => !["none", "transparent", "rgba(0, 0, 0, 0)"].includes(paint);
-        return line.getTotalLength() > 0 && line.getAttribute("stroke") !== "var(--grid)"
-            && (shows(stroke) || shows(fill));
-    };
-    const faults = [];
-    for (const svg of document.querySelectorAll("main svg")) {
-        const texts = [...svg.querySelectorAll("text")].filter(({textContent}) => textContent);
-        const boxes = texts.map(boxOf);
-        boxes.forEach((box, k) => {
-            const words = texts[k].textContent;
-            if (box.left < 0 || box.right > innerWidth) faults.push([words, "cut"]);
-            boxes.slice(0, k).forEach((other, n) => {
-                if (overlap(box, other)) faults.push([words, texts[n].textContent]);
-            });
-        });
-        for (const line of [...svg.querySelectorAll("path, line, circle")].filter(isSeen)) {
-            const matrix = line.getScreenCTM();
-            const length = line.getTotalLength();
-            for (let at = 0; at <= length; at += 4) {
-                const {x, y} = line.getPointAtLength(at).matrixTransform(matrix);
-                const crossed = boxes.findIndex(({left, right, top, bottom}) =>
-                    left < x && x < right && top < y && y < bottom);
-                if (crossed >= 0) {
-                    faults.push([texts[crossed].textContent, line.outerHTML.slice(0, 90)]);
-                    break;
-                }
-            }
-        }
-    }
-    return faults;
-}"""
 
 
 @pytest.mark.parametrize("options", [DESK, PHONE], ids=["desk", "phone"])

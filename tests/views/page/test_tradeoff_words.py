@@ -29,7 +29,7 @@ from quietarm.studies.reproduce.paper import paper_points
 from quietarm.views import trade_off
 from quietarm.views.page.samples import unpacked
 from quietarm.views.pictures.grammar import MEANINGS, OTHERS
-from quietarm.views.report.methods import described
+from quietarm.views.report.method_rows import described
 
 
 @dataclass(frozen=True)

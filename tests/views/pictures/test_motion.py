@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from several_joints import TwoLinks
 
 from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients
-from quietarm.views.pictures import QUANTITIES_DRAWN, Line, draw_quantity, motion_figure
+from quietarm.views.pictures import Line, Panel, draw_quantity, drawn_quantities, motion_figure
 from quietarm.views.report.words import move_of
 
 
@@ -145,7 +145,7 @@ def limits(axis):
 def test_limits_are_lines_where_a_motion_comes_near_them(task, limit, shown):
     motion = evaluate_coefficients(dataclasses.replace(task, **limit), [])
     drawn = [Line(motion, "cycloid")]
-    found = {name: limits(draw_quantity(drawn, name)) for name in QUANTITIES_DRAWN}
+    found = {name: limits(draw_quantity(drawn, name)) for name in drawn_quantities()}
     assert {name: at for name, at in found.items() if at} == {
         name: pytest.approx(at) for name, at in shown.items()
     }
@@ -173,3 +173,42 @@ def test_the_titles_of_joints_side_by_side_stay_apart_and_the_head_is_as_wide_as
     )
     sentence = figure.get_suptitle().split("\n")[0]
     assert len(sentence) > 60  # in one line, where a phone has room for 46 letters
+
+
+def test_a_panel_of_the_users_is_checked(task, what_is_made_up_is_forgotten):
+    plan = evaluate_coefficients(task, [])
+    with pytest.raises(ValueError, match="panel mine has no title; give one, as title = "):
+        type("Mine", (Panel,), {"name": "mine"})
+    with pytest.raises(ValueError, match=r"panel mine draws nothing; define values\(self"):
+        type("Mine", (Panel,), {"name": "mine", "title": "a"})
+    with pytest.raises(ValueError, match="unknown quantity 'mine'"):
+        draw_quantity(plan, "mine")
+    mine = {"name": "mine", "title": "a", "values": lambda self, motion: [1.0]}
+    kinds = [type("Mine", (Panel,), mine)]  # a class that nobody holds is gone
+    times = len(plan.trajectory.time)
+    with pytest.raises(
+        ValueError, match=rf"panel mine has values of shape \(1,\) at {times} times"
+    ):
+        draw_quantity(plan, "mine")
+    kinds.append(type("Mine", (Panel,), mine | {"name": "torque"}))
+    with pytest.raises(ValueError, match="name 'torque' of Mine is that of a panel of quietarm's"):
+        motion_figure(plan)
+
+
+def test_a_panel_of_several_curves_x(what_is_made_up_is_forgotten):
+    class Powers(Panel):
+        name = "powers"
+        title = "power of each joint [W]"
+
+        def values(self, motion):
+            powers = motion.trajectory.sample.powers
+            return dict(zip(motion.task.plant.joint_names, powers, strict=True))
+
+    plan = evaluate_coefficients(PointToPoint(TwoLinks(), 1.0, 1.0), [])
+    names = plan.task.plant.joint_names
+    assert len(names) == 2
+    labels = draw_quantity([Line(plan, "cycloid")], "powers").get_legend_handles_labels()[1]
+    assert labels == [f"cycloid, {name}" for name in names]
+    figure = motion_figure([Line(plan, "cycloid")], quantities=["angle", "power", "powers"])
+    titles = [ax.get_title(loc="left") for ax in figure.axes]
+    assert titles.count("power of each joint [W]") == titles.count("power [W]") == 1

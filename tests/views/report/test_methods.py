@@ -2,8 +2,9 @@
 
 import pytest
 
+from quietarm.metaheuristics.named_method import GRADIENT, NamedMethod
 from quietarm.studies.bench.results import derivative_free
-from quietarm.views.report.methods import is_gradient, label_of
+from quietarm.views.report.method_rows import is_gradient, label_of
 
 
 @pytest.mark.parametrize(
@@ -33,3 +34,24 @@ def test_a_front_and_its_polished_one_name_their_method(method, label, by_gradie
 )
 def test_a_job_names_solver_and_settings(method, label):
     assert label_of(method, solver="sqp") == label
+
+
+@pytest.mark.parametrize(
+    ("name", "named"),
+    [
+        ("nsga2", NamedMethod("nsga2")),
+        ("nsga2+polish", NamedMethod("nsga2", polish=True)),
+        ("epsilon:ipopt", NamedMethod("epsilon", "ipopt")),
+        ("weighted:ipopt(points=9)", NamedMethod("weighted", "ipopt", settings="(points=9)")),
+        ("gde3+polish(cr=0.3)", NamedMethod("gde3", polish=True, settings="(cr=0.3)")),
+        ("mine: a method", NamedMethod("mine: a method")),
+    ],
+)
+def test_a_name_is_read_into_its_parts_and_written_again(name, named):
+    assert NamedMethod.read(name) == named
+    assert str(named) == name
+
+
+def test_a_polished_front_is_read_as_a_job_would_be():
+    assert str(NamedMethod.read("epsilon, polished")) == "epsilon+polish"
+    assert [name for name in GRADIENT if not NamedMethod.read(name).by_gradient] == []

@@ -13,11 +13,16 @@ import quietarm as qa
 from quietarm.studies.compare.judged_motions import JudgedMotion
 from quietarm.studies.compare.plan_comparison import motions_table
 from quietarm.views import pictures
-from quietarm.views.formats.move_tables import csv_text
+from quietarm.views.formats.csv_rows import CsvRows
 from quietarm.views.report.plan_rows import plan_rows
 from quietarm.views.report.robot_rows import robot_rows
 
 LIMITS = {"torque_limit": {"x": 900.0, "radial-axis": 500.0}, "speed_limit": {"radial-axis": 2.0}}
+
+
+def csv_text(plan, columns, rate):
+    """A table as text."""
+    return CsvRows().content(plan, columns=columns, rate=rate)
 
 
 @pytest.fixture(scope="module")

@@ -68,7 +68,7 @@ main()
     [
         ("list", "numpy", signal.SIGINT),
         ("list", "click", signal.SIGHUP),
-        ("export plan.json --output move.png", "matplotlib.figure", signal.SIGTERM),
+        ("export plan.json --output move.gif", "matplotlib.figure", signal.SIGTERM),
     ],
 )
 def test_a_signal_during_an_import_is_answered(folder, plan, line, module, number):

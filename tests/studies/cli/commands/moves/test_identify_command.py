@@ -204,11 +204,14 @@ def test_files_of_recorders_tell_the_same(push, done, name):
 @pytest.mark.parametrize(
     "footer", ["({count} rows)", "{count} rows in set (0.02 sec)", "({count} rows affected)"]
 )
-def test_the_count_of_rows_below_a_query_is_no_row(push, done, footer):
+def test_the_count_of_rows_below_a_query_is_refused_with_its_line(push, refused, footer):
     header, form, columns, options = RECORDERS["query.txt"]
     below = footer.format(count=len(TIME))
-    (push / "query.txt").write_text(f"{header}{rows(form, *columns)}{below}\n\n")
-    same(done, f"identify query.txt flexible-beam {options}")
+    text = f"{header}{rows(form, *columns)}{below}\n\n"
+    (push / "query.txt").write_text(text)
+    said = refused(f"identify query.txt flexible-beam {options}")
+    number = text.splitlines().index(below) + 1
+    assert f"line {number}: '{below}' is no number; mend it, or leave the cell empty" in said
 
 
 @pytest.mark.slow

@@ -24,6 +24,15 @@ def test_limits_of_a_gripper_are_no_limits_of_the_move(folder, call):
     assert "grip" not in out
 
 
+def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call):
+    file = write_robot(folder, ARM, ARM_FILE, "a: {max_acceleration: 8}")
+    assert call(f"evaluate robot.yaml {MOVE} --torque-limit a=90 --output plan.json")[0] == 0
+    path = qa.GeometricPath.line([0.0, 0.0], [0.4, 0.3], joints=("a", "b"))
+    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0})
+    assert qa.Plan.load("plan.json").task == task
+    assert [limit.name for limit in task.limits] == ["torque", "speed", "acceleration"]
+
+
 def test_what_a_file_of_limits_leaves_out_stands_beside_the_figures(folder, call):
     write_robot(
         folder, ARM, ARM_FILE, "a: {max_acceleration: 8, max_deceleration: -3}\n  wheel: {}"

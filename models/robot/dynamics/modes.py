@@ -1,0 +1,82 @@
+"""Modes and sag of a robot whose driven joints are held."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from quietarm.models.joint_motion import Array
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics, SoftSpringError
+from quietarm.models.robot.elastic.flexibility import Measured
+from quietarm.models.robot.elastic.spectra import spectrum
+
+_MOST_STIFFER = 25.0
+"""So many times stiffer, or softer, may a measured frequency make the springs."""
+
+
+def as_measured(dynamics: Dynamics, measured: Measured) -> Dynamics:
+    """With springs by which the first mode has its measured frequency."""
+    from scipy.optimize import brentq  # takes a quarter of a second to load
+
+    q = np.array(measured.at)
+
+    def excess(logarithm: float) -> float:
+        values, _ = modes_at(dynamics.stiffened(math.exp(logarithm)), q)
+        return math.log(values[0] / measured.frequency)
+
+    stated, _ = modes_at(dynamics, q)
+    guess = 2 * math.log(measured.frequency / stated[0])
+    if abs(guess) > math.log(_MOST_STIFFER):
+        raise ValueError(
+            f"measured frequency is {measured.frequency / math.tau:.4g} Hz, and the robot's is "
+            f"{stated[0] / math.tau:.4g} Hz; check its springs, masses and where it was measured"
+        )
+    ends = (guess - _NEAR, guess + _NEAR)
+    logarithm: Any = brentq(excess, *ends, xtol=1e-13)
+    return dynamics.stiffened(math.exp(logarithm))
+
+
+_NEAR = 0.5
+"""Logarithm of the stiffness, within which gravity changes what a frequency asks for."""
+
+
+def sag_at(dynamics: Dynamics, q: Array, begin: Array | None = None) -> Array:
+    """Angles of the springs at rest; ValueError where one is too soft."""
+    try:
+        return dynamics.sag(q, begin)
+    except SoftSpringError as error:
+        raise _too_soft(dynamics, str(error), q) from None
+
+
+def modes_at(dynamics: Dynamics, q: Array, p: Array | None = None) -> tuple[Array, Array]:
+    """Frequencies [rad/s] and shapes of the modes about the sag, driven joints held."""
+    p = sag_at(dynamics, q) if p is None else p
+    _, stiffness = dynamics.stiffness_at(q, p)
+    masses = dynamics.masses(np.concatenate([q, p])).full()[dynamics.driven :, dynamics.driven :]
+    squares, shapes = spectrum((stiffness + stiffness.T) / 2, masses)
+    if squares[0] <= 0:
+        weakest = dynamics.mechanism.spring_names[int(np.abs(shapes[:, 0]).argmax())]
+        raise _too_soft(dynamics, weakest, q)
+    return np.sqrt(squares), shapes
+
+
+def _too_soft(dynamics: Dynamics, spring: str, q: Array) -> ValueError:
+    hint = dynamics.mechanism.hint
+    return ValueError(
+        f"spring {spring} is too soft to carry its load with the joints at "
+        f"{', '.join(f'{x:.4g}' for x in q)}; "
+        f"{hint or 'give a stiffer one, or less mass'}"
+    )
+
+
+def tip_offset(dynamics: Dynamics, tip: Any, q: Array, p: Array) -> Array:
+    """Where the tip is, seen in its frame on the robot that does not bend [m]."""
+    x = ca.SX.sym("x", dynamics.size)
+    rotation, origin = dynamics.place(tip, x)
+    place = ca.Function("place", [x], [rotation, origin])
+    straight, before = (entry.full() for entry in place(np.concatenate([q, 0 * p])))
+    _, bent = (entry.full() for entry in place(np.concatenate([q, p])))
+    return (straight.T @ (bent - before)).ravel()

@@ -1,0 +1,84 @@
+"""A robot with its equations, whatever its joints do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from quietarm.models.joint_motion import Array
+from quietarm.models.number_checks import has_no
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
+from quietarm.models.robot.dynamics.kinematics import Kinematics
+from quietarm.models.robot.dynamics.mechanism import Mechanism, build_mechanism
+from quietarm.models.robot.dynamics.modes import as_measured, modes_at, sag_at, tip_offset
+from quietarm.models.robot.dynamics.robot_parts import RobotParts
+from quietarm.models.robot.frames import Frame
+
+
+class MovingRobot(RobotParts):
+    """What follows from a robot's parts: bodies, equations, modes, where its links stand."""
+
+    @cached_property
+    def unscaled(self) -> Mechanism:
+        """The bodies, with the springs as they were given."""
+        return build_mechanism(self)
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The bodies, with the springs as they were measured."""
+        return self.dynamics.mechanism
+
+    @cached_property
+    def dynamics(self) -> Dynamics:
+        """The equations, with the springs as they were measured."""
+        dynamics = Dynamics(self.unscaled)
+        return dynamics if self.measured is None else as_measured(dynamics, self.measured)
+
+    def dynamics_with(self, stiffness: float, payload: float) -> Dynamics:
+        """The equations with so many times the stiffness of all springs, and the mass at the tip.
+
+        Dampers keep the damping ratio where the stiffness changes, and their values where the mass
+        does.
+        """
+        dynamics = self.dynamics
+        if payload != 1:
+            dynamics = Dynamics(self.mechanism.loaded((payload - 1) * self.payload))
+        return dynamics if stiffness == 1 else dynamics.stiffened(stiffness)
+
+    @property
+    def tip_place(self) -> tuple[int, Frame]:
+        """Body and frame of the tip."""
+        assert self.tip is not None
+        return self.mechanism.links[self.tip]
+
+    def kinematics(self, link: str | None = None) -> Kinematics:
+        """Where a link stands, if nothing bends; by default that with the beam, or else the tip.
+
+        Raises
+        ------
+        ValueError
+            When the robot has no link of that name.
+        """
+        if link is None:
+            link = self.beam.at if self.beam is not None else self.tip
+        assert link is not None
+        if link not in self.mechanism.links:
+            raise ValueError(has_no("the robot", "link, for a line,", link, self.mechanism.links))
+        return Kinematics(self.dynamics, link)
+
+    def frequencies(self, q: Sequence[float] | Array) -> Array:
+        """Of all modes with the driven joints held at q [rad/s], under gravity.
+
+        ValueError where a spring is too soft to carry its load.
+        """
+        values, _ = modes_at(self.dynamics, np.asarray(q, float))
+        return values
+
+    def sag(self, q: Sequence[float] | Array) -> Array:
+        """How far the tip hangs below the robot that does not bend [m], in the tip's frame."""
+        dynamics = self.dynamics
+        q = np.asarray(q, float)
+        p = sag_at(dynamics, q)
+        return tip_offset(dynamics, self.tip_place, q, p)

@@ -1,0 +1,380 @@
+"""Tables of a robot on its path: every coefficient of its equations, fitted once a path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from quietarm.models.joint_motion import Array, Expression
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.on_path.reduction import (
+    FORCING,
+    OF_MODES,
+    OF_TORQUES,
+    Coefficients,
+    Reduction,
+)
+from quietarm.models.robot.path.geometric_path import BEYOND, GeometricPath
+from quietarm.models.robot.path.piecewise import (
+    NODES,
+    NoFitError,
+    Piecewise,
+    Place,
+    cut,
+    fit,
+    interpolate,
+)
+
+ACCURACY = 1e-9
+"""Largest error of a table, as a share of what the coefficient can matter."""
+STIFFNESS = "stiffness"
+PAYLOAD = "payload"
+VARIED = (STIFFNESS, PAYLOAD)
+"""Multiples of a robot's, which a plant may have and its tables know."""
+FARTHEST = 0.3
+"""By which a multiple may be another than 1: there polynomials of fourth degree miss 2e-4 of what
+the sag changes."""
+ACCURACY_OF_CHANGES = 1e-7
+"""As `ACCURACY`, of what the farthest multiple changes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """Coefficients by group and entry, and the path, all on the same pieces.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (pieces + 1,)
+    modes, torques : mapping of str to ndarray
+        By coefficient of `OF_MODES` and `OF_TORQUES`: shape (pieces, terms, ...).
+    tips : ndarray, shape (pieces, terms, directions, modes)
+    path : list of ndarray, shape (pieces, terms, joints)
+        Positions and their first three derivatives.
+    frequencies : ndarray
+        Of all modes in the middle of the path [rad/s].
+    directions : tuple of int
+        Axes of the tip's frame along which it moves, from 0, those of `tips`.
+    """
+
+    knots: Array
+    modes: dict[str, Array]
+    torques: dict[str, Array]
+    tips: Array
+    tip_rates: Array
+    path: Sequence[Array]
+    frequencies: Array
+    directions: tuple[int, ...]
+
+    def at(self, place: Expression) -> Place:
+        """The basis at a place."""
+        terms = max(len(table[0]) for table in (self.tips, *self.path, *self.modes.values()))
+        return Place(self.knots, place, terms)
+
+    @property
+    def least_inertia(self) -> float:
+        """Least share of the inertia along the path that remains where the modes give way."""
+        places = np.linspace(0.0, 1.0, NODES)
+        whole, left = np.array([self._inertias(float(place)) for place in places]).T
+        moving = whole > _STILL * whole.max()
+        return float((left[moving] / whole[moving]).min())
+
+    def _inertias(self, place: float) -> tuple[float, float]:
+        """Inertia against s'' at a place with the modes held, and with them free."""
+        at = self.at(place)
+        slopes = at.values(self.path[1]).astype(float)
+        torques = at.values(self.torques["a"]).astype(float)
+        given_way = at.values(self.torques["N"]).astype(float) @ at.values(self.modes["a"]).astype(
+            float
+        )
+        return float(slopes @ torques), float(slopes @ (torques - given_way))
+
+    @property
+    def groups(self) -> dict[str, dict[str, Array]]:
+        """Of the modes, the torques, and the tips' rows and their slopes."""
+        return {
+            "modes": self.modes,
+            "torques": self.torques,
+            "tips": {"rows": self.tips, "slopes": self.tip_rates},
+        }
+
+    @property
+    def size(self) -> int:
+        """How many numbers they hold."""
+        groups = [*self.modes.values(), *self.torques.values(), self.tips]
+        return sum(int(np.count_nonzero(table)) for table in groups)
+
+
+_STILL = 1e-9
+"""Share of the largest inertia along a path, where its joints stand still."""
+EXCITED = "excited"
+"""In the place of a number of modes."""
+MOST_MODES = 12
+"""Of a robot: each of them is in every equation with each."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A mode of a robot on a path.
+
+    Attributes
+    ----------
+    number : int
+        0 of the slowest.
+    frequency : float
+        In the middle of the path [rad/s].
+    leaves : float
+        Largest displacement of the tip that it leaves [m], if alone, after a plain cycloid that
+        takes two swings of the slowest mode; undamped, its phase on arrival as bad as can be.
+    """
+
+    number: int
+    frequency: float
+    leaves: float
+
+
+@lru_cache(maxsize=64)
+def swings_of(robot: MovingRobot, path: GeometricPath) -> tuple[Swing, ...]:
+    """The slowest modes of a robot, twelve at most, and how a path excites each."""
+    count = min(MOST_MODES, len(robot.mechanism.sprung))
+    reduction = Reduction(robot.dynamics, robot.tip_place, path, range(count))
+    coefficients = reduction.at(np.linspace(0.0, 1.0, NODES))
+    forces = np.abs(coefficients.modes["a"]).max(axis=0)
+    displacements = np.linalg.norm(coefficients.tips, axis=1).max(axis=0)
+    frequencies = reduction.all_frequencies[:count]
+    duration = _SWINGS_OF_A_MOVE * math.tau / frequencies[0]
+    turning = math.tau / duration
+    amplitudes = 2 * forces * turning**2 / duration
+    amplitudes = amplitudes / (frequencies * np.abs(frequencies**2 - turning**2))
+    leaves = displacements * amplitudes
+    return tuple(
+        Swing(number, float(frequency), float(left))
+        for number, (frequency, left) in enumerate(zip(frequencies, leaves))
+    )
+
+
+_SWINGS_OF_A_MOVE = 2
+"""A move that is as short: shorter ones take much energy."""
+_EXCITED_SHARE = 1e-3
+"""Of what the most excited mode leaves: a mode that leaves less is not followed."""
+
+
+def modes_on(robot: MovingRobot, path: GeometricPath) -> tuple[int, ...]:
+    """Numbers of the modes that are followed on a path: so many, or those that it excites."""
+    if robot.modes != EXCITED:
+        assert robot.modes is not None
+        return tuple(range(int(robot.modes)))
+    swings = swings_of(robot, path)
+    least = _EXCITED_SHARE * max(swing.leaves for swing in swings)
+    return tuple(swing.number for swing in swings if swing.leaves >= least)
+
+
+@lru_cache(maxsize=16)
+def tables_of(robot: MovingRobot, path: GeometricPath) -> Tables:
+    """The tables of a robot on a path; ValueError where a spring cannot carry its load."""
+    reduction = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
+    layout = _Layout(reduction.at(np.array([0.5])))
+
+    def columns(places: Array) -> Array:
+        return layout.columns(reduction.at(places))
+
+    try:
+        found = fit(columns, path.extended.knots, lambda rows: ACCURACY * layout.scales(rows))
+    except NoFitError as error:
+        raise ValueError(
+            f"the robot's equations are not smooth near s = {error.place:.4g} of the path; give a "
+            "path that turns less sharply there"
+        ) from None
+    by_name = layout.split(found.coefficients)
+    positions = path.extended.on(found.knots)
+    terms = max(found.coefficients.shape[1], positions.coefficients.shape[1])
+    derivatives = [positions, *(positions.derivative(order) for order in (1, 2, 3))]
+    return Tables(
+        knots=found.knots,
+        modes={name: _filled(by_name[f"modes {name}"], terms) for name in OF_MODES},
+        torques={name: _filled(by_name[f"torques {name}"], terms) for name in OF_TORQUES},
+        tips=_filled(by_name["tips"], terms),
+        tip_rates=_filled(_slopes(found.knots, by_name["tips"]), terms),
+        path=[_filled(order.coefficients, terms) for order in derivatives],
+        frequencies=reduction.all_frequencies,
+        directions=tuple(reduction.directions.tolist()),
+    )
+
+
+Groups = dict[str, dict[str, Array]]
+"""Tables by group and entry, as of `Tables.groups`."""
+
+
+@lru_cache(maxsize=16)
+def variations_of(
+    robot: MovingRobot, path: GeometricPath, names: tuple[str, ...]
+) -> dict[tuple[int, ...], Groups]:
+    """What is added to the tables where multiples of `VARIED` are not 1.
+
+    Parameters
+    ----------
+    robot, path
+        Of the tables.
+    names : tuple of str
+        Which multiples are varied.
+
+    Returns
+    -------
+    dict
+        By powers of the multiples' errors: the tables that are multiplied by these.
+    """
+    tables = tables_of(robot, path)
+    nominal = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
+    layout = _Layout(nominal.at(np.array([0.5])))
+    multiples = dict.fromkeys(VARIED, 1.0)
+    errors, powers = _design(len(names))
+    varied = [
+        nominal.of(robot.dynamics_with(**(multiples | dict(zip(names, 1 + FARTHEST * error)))))
+        for error in errors
+    ]
+    monomials = np.prod(errors[:, None, :] ** np.array(powers), axis=2)
+
+    def terms_of(places: Array) -> Array:
+        """Places -> the factors of all monomials, side by side."""
+        before = layout.columns(nominal.at(places))
+        changes = np.array([layout.columns(reduction.at(places)) - before for reduction in varied])
+        factors = np.linalg.solve(monomials, changes.reshape(len(varied), -1))
+        by_place = factors.reshape(changes.shape).swapaxes(0, 1)
+        return by_place.reshape(len(places), -1)
+
+    scales = layout.scales(layout.columns(nominal.at(np.linspace(0.0, 1.0, NODES))))
+    fitted = cut(
+        interpolate(terms_of, tables.knots, NODES),
+        np.tile(ACCURACY_OF_CHANGES * scales, len(powers)),
+    )
+    terms = max(fitted.shape[1], len(tables.tips[0]))
+    variations = dict[tuple[int, ...], Groups]()
+    for power, part in zip(powers, np.split(fitted, len(powers), axis=2)):
+        by_name = layout.split(part / FARTHEST ** sum(power))
+        variations[power] = {
+            "modes": {name: _filled(by_name[f"modes {name}"], terms) for name in OF_MODES},
+            "torques": {name: _filled(by_name[f"torques {name}"], terms) for name in OF_TORQUES},
+            "tips": {
+                "rows": _filled(by_name["tips"], terms),
+                "slopes": _filled(_slopes(tables.knots, by_name["tips"]), terms),
+            },
+        }
+    return variations
+
+
+@lru_cache(maxsize=64)
+def groups_at(
+    robot: MovingRobot, path: GeometricPath, errors: tuple[tuple[str, float], ...]
+) -> Groups:
+    """The tables where multiples of `VARIED` have these errors: as many numbers as of none."""
+    groups = tables_of(robot, path).groups
+    if not errors:
+        return groups
+    names, sizes = zip(*errors)
+    variations = variations_of(robot, path, names)
+    summed = {group: dict(entries) for group, entries in groups.items()}
+    for powers, changes in variations.items():
+        factor = math.prod(size**power for size, power in zip(sizes, powers))
+        for group, entries in changes.items():
+            for name, change in entries.items():
+                before = summed[group][name]
+                terms = max(before.shape[1], change.shape[1])
+                summed[group][name] = _filled(before, terms) + factor * _filled(change, terms)
+    return summed
+
+
+def _design(count: int) -> tuple[Array, list[tuple[int, ...]]]:
+    """Errors of so many multiples, shares of the farthest, and as many powers of them."""
+    alone = [0.5, 1.0, -0.5, -1.0]
+    if count == 1:
+        return np.array(alone)[:, None], [(power,) for power in range(1, 5)]
+    errors = [(error, 0.0) for error in alone] + [(0.0, error) for error in alone]
+    errors += [(first, second) for first in (-1.0, 1.0) for second in (-1.0, 1.0)]
+    powers = [(power, 0) for power in range(1, 5)] + [(0, power) for power in range(1, 5)]
+    powers += [(1, 1), (1, 2), (2, 1), (2, 2)]
+    return np.array(errors), powers
+
+
+def _slopes(knots: Array, tips: Array) -> Array:
+    """Derivatives of the tips' rows by the place, shape (pieces, terms, directions, modes)."""
+    rows = Piecewise(knots, tips.reshape(*tips.shape[:2], -1))
+    slopes = rows.derivative().coefficients
+    return slopes.reshape(len(slopes), -1, *tips.shape[2:])
+
+
+def reach() -> tuple[float, float]:
+    """The places for which there are tables."""
+    return (-BEYOND, 1 + BEYOND)
+
+
+def _filled(table: Array, terms: int) -> Array:
+    """With zeros for the terms that are not needed."""
+    filled = np.zeros((table.shape[0], terms, *table.shape[2:]))
+    filled[:, : table.shape[1]] = table
+    return filled
+
+
+class _Layout:
+    """Where every coefficient stands in a row, and how large it is."""
+
+    def __init__(self, example: Coefficients) -> None:
+        self._parts = {name: part.shape[1:] for name, part in _named(example).items()}
+        self.tips = self._parts["tips"]
+
+    def columns(self, coefficients: Coefficients) -> Array:
+        """All in columns, a place in each row."""
+        parts = _named(coefficients).values()
+        return np.hstack([part.reshape(len(part), -1) for part in parts])
+
+    def split(self, columns: Array) -> dict[str, Array]:
+        """The coefficients of columns, which are along the last axis."""
+        found = dict[str, Array]()
+        begin = 0
+        for name, shape in self._parts.items():
+            end = begin + int(np.prod(shape))
+            found[name] = columns[..., begin:end].reshape(*columns.shape[:-1], *shape)
+            begin = end
+        return found
+
+    def scales(self, rows: Array) -> Array:
+        """What each column is compared with: the largest value of its term, or what matters.
+
+        The path forces the modes by an acceleration; they answer with amplitudes of that over the
+        square of the lowest frequency, which tells what else of their equations and of the torques
+        matters. A term that is nothing beside it is no better than noise.
+        """
+        parts = self.split(rows)
+        push = max(float(np.abs(parts[f"modes {name}"]).max()) for name in ("a", "b"))
+        push = max(push, _LEAST_PUSH)
+        square = float(np.abs(np.linalg.eigvals(parts["modes K"])).min())
+        root = math.sqrt(square)
+        force = max(float(np.abs(parts[f"torques {name}"]).max()) for name in ("a", "b", "g"))
+        units = {"D": root, "C": root, "N": 1.0}
+        scales = list[Array]()
+        for name, part in parts.items():
+            group, _, term = name.partition(" ")
+            unit = 1.0 if term in FORCING else units.get(term, square)
+            natural = {"modes": push if term in FORCING else unit, "tips": 1.0}.get(
+                group, force if term in FORCING else force * unit / push
+            )
+            largest = max(float(np.abs(part).max()), _SMALL * natural)
+            scales.append(np.full(part[0].size, largest))
+        return np.concatenate(scales)
+
+
+_LEAST_PUSH = 1e-6
+"""Acceleration of a mode [m/s^2] by a path that is followed in a second, which is nothing."""
+_SMALL = 1e-3
+"""Share of what matters: a smaller coefficient is as exact as one of that size."""
+
+
+def _named(coefficients: Coefficients) -> dict[str, Array]:
+    """Every coefficient by its name."""
+    return {
+        **{f"modes {name}": coefficients.modes[name] for name in OF_MODES},
+        **{f"torques {name}": coefficients.torques[name] for name in OF_TORQUES},
+        "tips": coefficients.tips,
+    }

@@ -1,0 +1,226 @@
+"""The equations of a robot on its path: functions of the place s alone, by a few modes.
+
+The sprung joints are at p = p0(s) + shapes W: p0 is the equilibrium under gravity, which moves with
+the path, and the shapes are those of the modes in the middle of it. To first order in W
+
+    W'' = -(a s'' + b s'^2 + e s') - (K + A s'' + B s'^2) W - (D + C s') W'
+    torques = a s'' + b s'^2 + e s' + g + (K + A s'' + B s'^2) W + C s' W' + N W''
+
+with coefficients of the modes and of the torques. They are derivatives of the inverse dynamics.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from quietarm.models.joint_motion import Array
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
+from quietarm.models.robot.dynamics.modes import modes_at, sag_at
+from quietarm.models.robot.frames import Frame
+from quietarm.models.robot.path.geometric_path import GeometricPath
+
+OF_MODES = ("a", "b", "e", "K", "A", "B", "D", "C")
+"""Coefficients of the modes' equations."""
+OF_TORQUES = ("a", "b", "e", "g", "K", "A", "B", "C", "N")
+"""Of the torques."""
+FORCING = ("a", "b", "e", "g")
+"""Those that do not multiply the modes."""
+MIDDLE = 0.5
+"""The place on the path whose modes' shapes are used."""
+_AXIAL = 0.05
+"""Share of the largest displacement below which a direction of the tip is left out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Coefficients:
+    """Every coefficient at several places, the places along the first axis."""
+
+    modes: dict[str, Array]
+    torques: dict[str, Array]
+    tips: Array
+
+
+class Reduction:
+    """The coefficients of a robot on a path, exact at any place."""
+
+    def __init__(
+        self, dynamics: Dynamics, tip: tuple[int, Frame], path: GeometricPath, modes: Sequence[int]
+    ) -> None:
+        self.dynamics = dynamics
+        self._path = path
+        self._tip = tip
+        q = path(MIDDLE)
+        self._sag_in_the_middle = sag_at(dynamics, q)
+        squares, shapes = modes_at(dynamics, q, self._sag_in_the_middle)
+        self.all_frequencies = squares
+        """Of all modes in the middle of the path [rad/s]."""
+        self.shapes = shapes[:, list(modes)]
+        self.directions = np.arange(3)
+        rows = self._tip_rows(q, self._sag_in_the_middle)
+        self.shapes = self.shapes * self._scales(rows)
+        rows = np.abs(self._tip_rows(q, self._sag_in_the_middle)).sum(axis=1)
+        self.directions = np.flatnonzero(rows > _AXIAL * rows.max())
+
+    def of(self, dynamics: Dynamics) -> Reduction:
+        """Of other springs or masses, in the shapes of this one's modes."""
+        reduction = copy.copy(self)
+        reduction.dynamics = dynamics
+        reduction._sag_in_the_middle = sag_at(dynamics, self._path(MIDDLE))
+        if dynamics.mechanism.bodies is not self.dynamics.mechanism.bodies:
+            for name in _COMPILED:
+                vars(reduction).pop(name, None)
+        return reduction
+
+    def at(self, places: Array) -> Coefficients:
+        """All coefficients at these places of the path."""
+        q, slope, bend = (self._path(places, order) for order in range(3))
+        sag = self.sags(q)
+        along = self._rates(q, sag, slope, bend)
+        positions = np.hstack([q, sag])
+        first, second, rows = along
+        outputs = self._coefficients.map(len(places))(
+            positions.T, np.hstack([slope, first]).T, np.hstack([bend, second]).T
+        )
+        raw = {
+            name: self._by_place(name, output.full(), len(places))
+            for name, output in zip(OF_TORQUES, outputs)
+        }
+        return self._by_modes(raw, first, rows)
+
+    def sags(self, q: Array) -> Array:
+        """Angles of the springs at rest at many positions of the joints, each near the last."""
+        found = list[Array]()
+        begin = self._sag_in_the_middle
+        for row in q:
+            begin = sag_at(self.dynamics, row, begin)
+            found.append(begin)
+        return np.array(found)
+
+    def _by_modes(self, raw: dict[str, Array], sag_rate: Array, tips: Array) -> Coefficients:
+        """Coefficients of the modes by their masses, and of the torques."""
+        driven = self.dynamics.driven
+        mechanism = self.dynamics.mechanism
+        shapes = self.shapes
+        masses = shapes.T @ raw["N"][:, driven:]
+        stiffness = shapes.T @ (mechanism.stiffness[:, None] * shapes)
+        damping = shapes.T @ (mechanism.damping[:, None] * shapes)
+        forces = {name: shapes.T @ raw[name][:, driven:] for name in ("K", "A", "B", "C")}
+        forces |= {name: (raw[name][:, driven:] @ shapes)[..., None] for name in ("a", "b")}
+        forces["K"] = forces["K"] + stiffness
+        forces["D"] = np.broadcast_to(damping, masses.shape)
+        forces["e"] = ((sag_rate * mechanism.damping) @ shapes)[..., None]
+        of_modes = dict[str, Array]()
+        for name in OF_MODES:
+            of_modes[name] = np.asarray(np.linalg.solve(masses, forces[name]), float)
+        for name in ("a", "b", "e"):
+            of_modes[name] = of_modes[name][..., 0]
+        of_torques = {name: raw[name][:, :driven] for name in OF_TORQUES}
+        return Coefficients(of_modes, of_torques, tips)
+
+    def _by_place(self, name: str, table: Array, count: int) -> Array:
+        """Outputs that stand side by side, with the places along the first axis."""
+        by_place = np.moveaxis(table.reshape(self.dynamics.size, count, -1), 1, 0)
+        return by_place[..., 0] if name in FORCING else by_place
+
+    @cached_property
+    def _coefficients(self) -> ca.Function:
+        """(positions, their first and second slopes) -> `OF_TORQUES`, of all joints."""
+        dynamics = self.dynamics
+        size = dynamics.size
+        x, slope, bend = (ca.SX.sym(name, size) for name in ("x", "slope", "bend"))
+        v = ca.SX.sym("v", size)
+        still = ca.SX(size, 1)
+        at_rest = dynamics.torques(x, still, still)
+        pushed = dynamics.torques(x, still, slope) - at_rest
+        moving = dynamics.torques(x, v, bend)
+        unknown = ca.SX.sym("a", size)
+        masses = dynamics.torques(x, still, unknown)
+        shapes = [
+            ca.DM(np.concatenate([np.zeros(dynamics.driven), shape])) for shape in self.shapes.T
+        ]
+
+        def along(expression: ca.SX, by: ca.SX) -> ca.SX:
+            return ca.horzcat(*(ca.jtimes(expression, by, shape) for shape in shapes))
+
+        friction = ca.vertcat(
+            ca.DM(dynamics.mechanism.friction) * slope[: dynamics.driven], ca.SX(dynamics.sprung, 1)
+        )
+        at_speed = moving - at_rest
+        by_square = ca.substitute(at_speed, v, slope) - friction
+        outputs = [
+            pushed,
+            by_square,
+            friction,
+            at_rest,
+            along(at_rest, x),
+            along(pushed, x),
+            ca.substitute(along(at_speed, x), v, slope),
+            ca.substitute(along(moving, v), v, slope),
+            along(masses, unknown),
+        ]
+        dense = [ca.densify(output) for output in outputs]
+        return ca.Function("coefficients", [x, slope, bend], dense, {"cse": True})
+
+    def _rates(self, q: Array, sag: Array, slope: Array, bend: Array) -> tuple[Array, Array, Array]:
+        """First and second slopes of the sag by s, and displacements of the tip by the modes."""
+        first, second, rows = list[Array](), list[Array](), list[Array]()
+        for position, p, q1, q2 in zip(q, sag, slope, bend):
+            x = np.concatenate([position, p])
+            nothing = np.zeros(len(p))
+            _, stiffness = self.dynamics.stiffness_at(position, p)
+            by_q, _ = self._second(x, np.concatenate([q1, nothing]), np.concatenate([q2, nothing]))
+            p1 = -np.linalg.solve(stiffness, by_q.full().ravel())
+            _, curved = self._second(x, np.concatenate([q1, p1]), np.concatenate([q2, nothing]))
+            p2 = -np.linalg.solve(stiffness, curved.full().ravel())
+            first.append(p1)
+            second.append(p2)
+            rows.append(self._tip_rows(position, p))
+        return np.array(first), np.array(second), np.array(rows)
+
+    @cached_property
+    def _second(self) -> ca.Function:
+        """(x, its first slope, its second) -> the same of the springs' torques at rest."""
+        dynamics = self.dynamics
+        x, slope, bend = (ca.SX.sym(name, dynamics.size) for name in ("x", "slope", "bend"))
+        still = ca.SX(dynamics.size, 1)
+        torque = dynamics.torques(x, still, still)[dynamics.driven :]
+        first = ca.jtimes(torque, x, slope)
+        second = ca.jtimes(first, x, slope) + ca.jtimes(torque, x, bend)
+        dense = [ca.densify(first), ca.densify(second)]
+        return ca.Function("second", [x, slope, bend], dense, {"cse": True})
+
+    @cached_property
+    def _tip_slopes(self) -> ca.Function:
+        """(x) -> slopes of the tip's place by the springs' angles, in the straight tip's frame."""
+        dynamics = self.dynamics
+        x = ca.SX.sym("x", dynamics.size)
+        _, origin = dynamics.place(self._tip, x)
+        straight = ca.vertcat(x[: dynamics.driven], ca.SX(dynamics.sprung, 1))
+        rotation, _ = dynamics.place(self._tip, straight)
+        slopes = rotation.T @ ca.jacobian(origin, x)[:, dynamics.driven :]
+        return ca.Function("tip_slopes", [x], [ca.densify(slopes)], {"cse": True})
+
+    def _tip_rows(self, q: Array, p: Array) -> Array:
+        """Displacements of the tip by the modes, shape (directions, modes)."""
+        slopes = self._tip_slopes(np.concatenate([q, p])).full()
+        return slopes[self.directions] @ self.shapes
+
+    def _scales(self, rows: Array) -> Array:
+        """By which W is the largest displacement of the tip; of a mode that leaves it, of 1 rad."""
+        largest = np.abs(rows).max(axis=0)
+        signs = np.sign(rows[np.abs(rows).argmax(axis=0), np.arange(rows.shape[1])])
+        angles = np.abs(self.shapes).max(axis=0)
+        moves = largest > _LEAST_OF_TIP * angles
+        return np.where(moves, signs / np.where(moves, largest, 1.0), 1 / angles)
+
+
+_COMPILED = ("_coefficients", "_second", "_tip_slopes")
+"""What is compiled from the equations of a dynamics."""
+_LEAST_OF_TIP = 1e-6
+"""Displacement of the tip [m] by a mode of 1 rad, below which the mode does not move it."""

@@ -1,0 +1,104 @@
+"""Joints that follow others, as a URDF's <mimic> says: which, how, and what that asks of these."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+from quietarm.models.joint_motion import JointMotion
+from quietarm.models.number_checks import nearest_name, quoted
+from quietarm.models.robot.urdf.read_urdf import Urdf
+
+
+@dataclass(frozen=True)
+class Following:
+    """A joint's position: multiplier times that of the joint that leads, plus offset [rad or m]."""
+
+    leader: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+    def position(self, leading: float) -> float:
+        """The joint's position where the leader has one."""
+        return self.multiplier * leading + self.offset
+
+    def motion(self, leading: JointMotion) -> JointMotion:
+        """The joint's motion by that of the leader."""
+        jerk = None if leading.jerk is None else self.multiplier * leading.jerk
+        return JointMotion(
+            self.multiplier * leading.angle + self.offset,
+            self.multiplier * leading.speed,
+            self.multiplier * leading.acceleration,
+            jerk,
+        )
+
+    def range_of_leader(self, lower: float, upper: float) -> tuple[float, float]:
+        """Where the leader may be such that the joint is within its own range."""
+        if self.multiplier == 0:
+            return (-math.inf, math.inf)
+        ends = [(end - self.offset) / self.multiplier for end in (lower, upper)]
+        return min(ends), max(ends)
+
+
+def led_by(urdf: Urdf, joint: str, held: Collection[str] = ()) -> Following:
+    """Which joint leads one in the end, through others that follow; itself where it follows none.
+
+    One that is `held` follows none. Where the last in a chain mimics a joint that the URDF does not
+    have, the leader is that one.
+    """
+    leader = joint
+    multiplier = 1.0
+    offset = 0.0
+    while leader in urdf.joints and leader not in held:
+        mimic = urdf.joints[leader].mimics
+        if mimic is None:
+            break
+        offset += multiplier * mimic.offset
+        multiplier *= mimic.multiplier
+        leader = mimic.joint
+    return Following(leader, multiplier, offset)
+
+
+def followers_of(urdf: Urdf, held: Collection[str] = ()) -> dict[str, Following]:
+    """The moving joints that follow another, by name, those on `held` ones left out."""
+    following = {name: led_by(urdf, name, held) for name in urdf.moving}
+    return {
+        name: entry
+        for name, entry in following.items()
+        if entry.leader != name and entry.leader not in held and entry.leader in urdf.moving
+    }
+
+
+def held_position(urdf: Urdf, joint: str, held: Mapping[str, float]) -> float:
+    """Where a joint is that no motor moves: as given, 0, or as the held joint that it follows."""
+    following = led_by(urdf, joint, held)
+    return following.position(held.get(following.leader, 0.0))
+
+
+def limits_with_followers(urdf: Urdf, entry: str, held: Collection[str] = ()) -> dict[str, float]:
+    """The limits of an entry of <limit> by joint, those of followers as limits of their leaders."""
+    sizes = {name: getattr(joint, entry) for name, joint in urdf.joints.items()}
+    return bounds_of_leaders(sizes, followers_of(urdf, held))
+
+
+def bounds_of_leaders(
+    limits: Mapping[str, float], followers: Mapping[str, Following]
+) -> dict[str, float]:
+    """Limits by joint, those of joints that follow others as limits of these; 0 is none."""
+    bounds = dict[str, float]()
+    for name, size in limits.items():
+        following = followers.get(name, Following(name))
+        if size > 0 and following.multiplier:
+            bound = size / abs(following.multiplier)
+            bounds[following.leader] = min(bound, bounds.get(following.leader, math.inf))
+    return bounds
+
+
+def mimics_nothing(urdf: Urdf, joint: str) -> str:
+    """What a joint mimics that the URDF does not have, and the joint that is meant; or nothing."""
+    mimic = urdf.joints[joint].mimics if joint in urdf.joints else None
+    if mimic is None or mimic.joint in urdf.joints:
+        return ""
+    meant = nearest_name(mimic.joint, urdf.joints)
+    return f"mimics {quoted(mimic.joint)}{f' (did you mean {quoted(meant)}?)' if meant else ''}"

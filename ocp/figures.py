@@ -1,0 +1,307 @@
+"""Figures of a motion: one table, which reports, notebooks, pages, tables and files read.
+
+An entry says what a figure is called, its unit, and how it follows from a motion that CVODES has
+judged. One's own, by `add_figure`, stands wherever those of quietarm do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from quietarm.interrupts import interruptible
+from quietarm.models import Plant
+from quietarm.models.dimensions import JOULE, TIP, WATT, WAY, Unit, Words
+from quietarm.models.plant_file import note_added
+from quietarm.ocp.checks import instance, quoted, takes, unknown, words_of_error
+from quietarm.ocp.errors import QuietarmError
+from quietarm.ocp.limits import (
+    PAGE,
+    PLACES,
+    QUANTITIES,
+    REPORT,
+    RESIDUAL,
+    Quantity,
+    Ranged,
+)
+from quietarm.ocp.record import REST
+
+if TYPE_CHECKING:
+    from quietarm.ocp.candidate import Candidate
+
+ENERGY = "energy"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of a motion.
+
+    Attributes
+    ----------
+    name : str
+        Its name, as ``rms_torque``.
+    unit : Unit
+        Its SI unit, as `EFFORT`.
+    label : Words
+        What it is, where the joint turns and where it slides.
+    of : callable
+        The figure of a `Candidate`, a motion that CVODES has judged; where a motion has none,
+        infinite or no number.
+    symbol : str
+        Its symbol, as F1.
+    digits : int
+        How many digits are shown.
+    shown : frozenset of str
+        Some of `PLACES`: where it stands.
+    agreement : float
+        The difference from what a file states within which it is always the same [its unit].
+    quantity : str
+        The quantity whose peak it is; empty of others.
+    """
+
+    example: ClassVar[str] = "a figure, as Figure('rms_torque', EFFORT, Words('RMS torque'), rms)"
+
+    name: str
+    unit: Unit
+    label: Words
+    of: Callable[[Candidate], float]
+    symbol: str = ""
+    digits: int = 4
+    shown: frozenset[str] = PLACES
+    agreement: float = 0.0
+    quantity: str = ""
+
+    def __post_init__(self) -> None:
+        instance("unit", self.unit, Unit)
+        instance("label", self.label, Words)
+
+    def value(self, candidate: Candidate) -> float:
+        """The figure of a motion; ValueError where a function of one's own gives no number."""
+        if self.name not in _added:
+            return self.of(candidate)
+        try:
+            return float(self.of(candidate))
+        except QuietarmError:
+            raise
+        except Exception as error:  # of a function of one's own
+            raise ValueError(
+                f"the figure {self.name!r} fails ({words_of_error(error)}); give a function of a "
+                "Candidate that returns a number"
+            ) from None
+
+    def unit_on(self, plant: Plant) -> str:
+        """Its unit, of a plant."""
+        return self.unit.of(plant.joint, plant.tip_unit)
+
+    def label_on(self, plant: Plant) -> str:
+        """What it is, of a plant."""
+        return self.label.of(plant.joint)
+
+    def column_on(self, plant: Plant) -> str:
+        """Its name with its unit, as columns of a table are called."""
+        unit = self.unit.on(plant.joint, plant.tip_unit)
+        return f"{self.name}_{unit.in_heading}" if unit.powers else self.name
+
+    def words(self, value: float, plant: Plant, drawn: bool = False) -> str:
+        """A value with its unit; as it is `drawn` with powers raised."""
+        unit = self.unit.on(plant.joint, plant.tip_unit)
+        return f"{value:.{self.digits}g} {unit.drawn if drawn else unit}".rstrip()
+
+
+def peak_figure(quantity: Quantity) -> Figure:
+    """The largest absolute value of a quantity during the move, as a figure."""
+
+    def peak(candidate: Candidate) -> float:
+        least, largest = candidate.range_of(QUANTITIES.get(quantity.name, quantity))
+        return max(-least, largest)
+
+    return Figure(
+        quantity.peak,
+        quantity.unit,
+        quantity.words.within("peak {}"),
+        peak,
+        shown=quantity.shown,
+        quantity=quantity.name,
+    )
+
+
+@interruptible
+def rms(quantity: str) -> Callable[[Candidate], float]:
+    """Return what gives a quantity's root mean square over the move, the largest of a joint.
+
+    ValueError where there is no such quantity.
+    """
+    _refuse_unknown(quantity)
+
+    def value(candidate: Candidate) -> float:
+        rows = candidate.values_of(QUANTITIES[quantity])
+        return float(np.sqrt(rows**2 @ candidate.weights / candidate.task.duration).max())
+
+    return value
+
+
+@interruptible
+def final(quantity: str) -> Callable[[Candidate], float]:
+    """Return what gives a quantity's largest absolute value on arrival; ValueError likewise."""
+    _refuse_unknown(quantity)
+
+    def value(candidate: Candidate) -> float:
+        return float(np.abs(candidate.values_of(QUANTITIES[quantity])[:, -1]).max())
+
+    return value
+
+
+def _refuse_unknown(quantity: str) -> None:
+    if quantity not in QUANTITIES:
+        raise ValueError(unknown("quantity", quantity, QUANTITIES))
+
+
+def _peak_power(candidate: Candidate) -> float:
+    return candidate.peak_of_rows([candidate.moving.power])
+
+
+_FIRST = (
+    Figure(
+        RESIDUAL,
+        TIP,
+        Words("residual"),
+        lambda candidate: candidate.residual,
+        symbol="F1",
+        agreement=REST,
+    ),
+    Figure(ENERGY, JOULE, Words("energy"), lambda candidate: candidate.energy, symbol="F2"),
+    Figure(
+        "net_work",
+        JOULE,
+        Words("net work"),
+        lambda candidate: candidate.net_work,
+        shown=frozenset(),
+    ),
+)
+_POWER = Figure("peak_power", WATT, Words("peak power"), _peak_power, shown=frozenset({PAGE}))
+_OVERSHOOT = Figure(
+    "overshoot",
+    WAY,
+    Words("overshoot"),
+    lambda candidate: candidate.overshoot,
+    digits=3,
+    shown=frozenset({REPORT}),
+)
+
+
+_added: dict[str, Figure] = {}
+"""Those of one's own, by name."""
+
+
+class _Table(Mapping[str, Figure]):
+    """The figures by name: objectives, peaks of all quantities, others, one's own."""
+
+    def __getitem__(self, name: str) -> Figure:
+        return self._entries()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries())
+
+    def __len__(self) -> int:
+        return len(self._entries())
+
+    def _entries(self) -> dict[str, Figure]:
+        torque, *peaks = map(peak_figure, QUANTITIES.values())
+        figures = (*_FIRST, torque, _POWER, *peaks, _OVERSHOOT, *_added.values())
+        return {figure.name: figure for figure in figures}
+
+
+FIGURES: Mapping[str, Figure] = _Table()
+"""Every figure by its name: a new one is one entry, or `add_figure` in a file of one's own."""
+
+
+@takes(figure=Figure)
+def add_figure(figure: Figure) -> Figure:
+    """Make a figure of one's own known: to reports, notebooks, pages, tables, captions and files.
+
+    A file of one's own, as of ``--plant-file``, calls it. An entry of the same name that was added
+    before is replaced. ValueError where the name is taken, or is none of Python.
+    """
+    name = figure.name
+    if name in FIGURES and name not in _added:
+        raise ValueError(f"the figure {name!r} is quietarm's own; give yours another name")
+    if not name.isidentifier():
+        raise ValueError(
+            f"the name of a figure is {quoted(name)}; give letters, digits and _, as rms_torque"
+        )
+    _added[name] = figure
+    note_added(figure)
+    return figure
+
+
+@takes()
+def remove_figure(name: str) -> None:
+    """Forget a figure that was added, as at the end of a test; nothing where there is none."""
+    _added.pop(name, None)
+
+
+def figures_in(place: str) -> list[Figure]:
+    """The figures that stand in one of `PLACES`, in the order of the table."""
+    return [figure for figure in FIGURES.values() if place in figure.shown]
+
+
+def added_figures(place: str) -> list[Figure]:
+    """Those of them that are one's own: for places where others stand in words of their own."""
+    return [figure for figure in _added.values() if place in figure.shown]
+
+
+class Figures(Mapping[str, Any], Ranged):
+    """Figures by name, each computed when it is first read; also as attributes.
+
+    Of a motion there are those that it has: none of the jerk where the acceleration jumps.
+    """
+
+    def __init__(
+        self, of: Mapping[str, Any] | None = None, candidate: Candidate | None = None
+    ) -> None:
+        self._values = dict(of or {})
+        self.candidate = candidate
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._values:
+            if self.candidate is None:
+                raise KeyError(name)
+            self._values[name] = FIGURES[name].value(self.candidate)
+        if isinstance(self._values[name], float) and not math.isfinite(self._values[name]):
+            raise KeyError(name)
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        names = self._values if self.candidate is None else FIGURES
+        return (name for name in list(names) if name in self)
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or (name not in self._values and name not in FIGURES):
+            raise AttributeError(f"there is no figure {name!r}; there are {', '.join(FIGURES)}")
+        return self.get(name)
+
+    def __repr__(self) -> str:
+        return f"Figures({dict(self)})"
+
+    def range_of(self, quantity: Quantity) -> tuple[float, float]:
+        """As of `Ranged`; from minus to plus the peak where no more is known."""
+        if self.candidate is not None:
+            return self.candidate.range_of(quantity)
+        peak = self.peak(quantity.name)
+        return -peak, peak
+
+    def peak(self, name: str) -> float:
+        """Return residual, energy, or a quantity's peak, by name: infinite where it has none."""
+        figure = name if name in (RESIDUAL, ENERGY) else f"peak_{name}"
+        return float(self.get(figure, math.inf))
+
+    def take(self, rows: slice) -> Figures:
+        """Those of some motions, where each is an array with an entry for each."""
+        return Figures({name: values[rows] for name, values in self._values.items()})

@@ -1,0 +1,123 @@
+"""`quietarm compare`: fronts of one task, or plans of one move with baselines and errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import click
+from rich.console import Console
+
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
+from quietarm.studies.cli.outputs import REPORT_OPTION, finish
+from quietarm.studies.cli.plants import warn_of_notes
+from quietarm.studies.cli.quantities import MEASURED, once
+from quietarm.studies.cli.types import INPUT, NAMES
+from quietarm.studies.compare.judged_motions import SAMPLES
+from quietarm.views.report import Report
+from quietarm.views.report.terminal import print_lines
+
+if TYPE_CHECKING:
+    from quietarm.ocp import Front, Plan, Solver
+    from quietarm.studies.compare.front_comparison import Comparison
+
+
+_OF_FLOOR = [param.name or "" for param in SOLVER]
+"""Options of what solves here: the floor beneath fronts."""
+
+
+@command(
+    click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
+    option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
+    ERROR,
+    option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
+    option("--reference", type=INPUT,
+           help="Fronts: measure IGD+ and additive epsilon against this one."),
+    option("--free-motion/--no-free-motion", "free", default=True,
+           help="Fronts: find the best free motion as well."),
+    *SOLVER, REPORT_OPTION,
+)  # fmt: skip
+def compare(given: Given) -> None:
+    """Compare fronts of one task, or plans of one move.
+
+    Fronts, found by any methods, or a folder of a bench: energies within residuals, hypervolume,
+    IGD+, additive epsilon, candidates and time; several seeds of a method as median and quartiles.
+
+    Plans: energy, residual, the worst case within parameter errors, insensitivity, percentiles,
+    peaks, and the limits that they exceed, beside the cycloid, input shapers, ruckig and toppra.
+    Ruckig needs quietarm[ruckig] and an acceleration limit, toppra quietarm[toppra] and one of
+    acceleration or torque.
+
+    \b
+    Examples:
+      quietarm compare nsga2.json vepso.json epsilon.json --output compared
+      quietarm compare plan.json robust.json --error frequency=8% --baselines zvd,ruckig
+    """  # noqa: D301  # \b is click's: do not rewrap
+    from quietarm.ocp import Front, Plan
+    from quietarm.studies.compare.load_answers import open_answers
+
+    with busy("comparing"):
+        answers = open_answers(given.files)
+        plans = {name: answer for name, answer in answers.items() if isinstance(answer, Plan)}
+        fronts = {name: answer for name, answer in answers.items() if isinstance(answer, Front)}
+        if plans:
+            given.refuse(["reference", "free", *_OF_FLOOR], "is for fronts")
+            report = _of_plans(given, plans)
+        else:
+            given.refuse(["baselines", "errors", "samples"], "is for plans")
+            if not given.free:
+                given.refuse(_OF_FLOOR, "is for the free motion, which --no-free-motion leaves out")
+            report = _of_fronts(given, fronts)
+    finish(report.files(*given.output), report)
+
+
+def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
+    """Plans and baselines; `measured` errors are those that the plans are made for."""
+    from quietarm.studies.compare.judged_motions import merged_ranges
+    from quietarm.studies.compare.plan_comparison import compare_plans, plans_report
+
+    ranges = once(given.errors, "--error ")
+    if ranges.pop(MEASURED, None) is not None:
+        measured = merged_ranges(plan.task for plan in plans.values())
+        if not measured:
+            raise ValueError(
+                "--error measured takes the ranges that the plans are made for, and these have "
+                "none; give errors as frequency=10%"
+            )
+        ranges = {**measured, **ranges}
+    judged = compare_plans(plans, given.baselines or (), ranges, given.samples)
+    first_task = next(iter(plans.values())).task
+    return plans_report(first_task, judged)
+
+
+def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
+    from quietarm.studies.answers.read_answers import load_front
+    from quietarm.studies.compare.front_report import compare_by_task, fronts_report
+    from quietarm.studies.reproduce.paper import paper_points
+
+    reference = None if given.reference is None else load_front(given.reference)
+    comparisons = compare_by_task(fronts, reference, str(given.reference))
+    if given.free:
+        solver = given.read_solver()
+        comparisons = list(map(partial(_with_floor, solver=solver), comparisons))
+    of_paper = [
+        paper_points(comparison.task, {run.front.profile.size for run in comparison.runs})
+        for comparison in comparisons
+    ]
+    for comparison in comparisons:
+        warn_of_notes(comparison.task.plant)
+    return fronts_report(comparisons, of_paper)
+
+
+def _with_floor(comparison: Comparison, solver: Solver) -> Comparison:
+    """With the least energy over all joint motions; without where none is found."""
+    from quietarm.ocp import QuietarmError, energy_floor
+
+    try:
+        return replace(comparison, floor=energy_floor(comparison.task, solver=solver).energy)
+    except QuietarmError as error:
+        print_lines(Console(stderr=True), f"no free motion: {error}")
+        return comparison

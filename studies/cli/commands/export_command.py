@@ -1,0 +1,225 @@
+"""`quietarm export`: moves for a controller, as films, as a page, or in a format of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from quietarm.models import load_plant_file
+from quietarm.models.units import UNITS, parse_quantity
+from quietarm.ocp.files import check_writable, write_whole
+from quietarm.studies.answers.read_answers import load_fronts_and_plans, load_plans
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import Command, busy, counting, option
+from quietarm.studies.cli.outputs import finish, settings_of_studies
+from quietarm.studies.cli.types import INPUT, Named, Parsed
+from quietarm.views.formats.export_format import (
+    DATASET,
+    FRONT,
+    ExportFormat,
+    ExportSetting,
+    Progress,
+    endings_of,
+    format_of,
+    known_formats,
+    takers_of,
+)
+from quietarm.views.formats.formats import write_in
+from quietarm.views.report.saving import STDOUT, File
+
+
+def _to_stdout() -> list[str]:
+    """The formats that can go to standard output."""
+    return [form.name for form in known_formats().values() if form.to_stdout]
+
+
+def _output(text: str) -> Path:
+    """A file that can be written, or standard output."""
+    path = Path(text)
+    return path if path == STDOUT else check_writable(path)
+
+
+class ExportCommand(Command):
+    """It has an option for each setting of a format, those of the user's own file too."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Load the user's file first: what it brings has options."""
+        path = _value_after("--plant-file", args)
+        if path is not None:
+            try:
+                load_plant_file(path)
+            except ValueError as error:
+                hint = "'--plant-file'"
+                raise click.BadParameter(str(error), ctx=ctx, param_hint=hint) from None
+        return super().parse_args(ctx, args)
+
+    @property
+    def own_params(self) -> list[click.Parameter]:
+        """Its own options, and those of the formats."""
+        return [*super().own_params, _format_option(), *_setting_options()]
+
+
+def _format_option() -> click.Option:
+    """--format, of standard output."""
+    possible = _to_stdout()
+    words = f"Of standard output: {' or '.join(possible)}. [default: {possible[0]}]"
+    return option("--format", "form", type=Named("format", known_formats), help=words)
+
+
+def _value_after(name: str, words: Sequence[str]) -> str | None:
+    """What was typed of an option, if it was."""
+    for word, following in zip(words, [*words[1:], None]):
+        if word == "--":
+            return None
+        if word == name:
+            return following
+        if word.startswith(f"{name}="):
+            return word.removeprefix(f"{name}=")
+    return None
+
+
+def _setting_options() -> list[click.Option]:
+    """An option for each name of a setting, with what it means to which format."""
+    by_option = dict[str, list[tuple[str, ExportSetting]]]()
+    for form in known_formats().values():
+        for setting in form.settings:
+            if setting.type_of_value is not object:
+                by_option.setdefault(setting.option, []).append((form.name, setting))
+    return [
+        option(name, settings[0][1].name, help=_help_of(settings), metavar=_metavar(settings))
+        for name, settings in by_option.items()
+    ]
+
+
+def _help_of(settings: Sequence[tuple[str, ExportSetting]]) -> str:
+    """Every meaning once, after the formats that it is of, with its default."""
+    of = dict[ExportSetting, list[str]]()
+    for name, setting in settings:
+        of.setdefault(setting, []).append(name)
+    return " ".join(_help_line(setting, names) for setting, names in of.items())
+
+
+def _help_line(setting: ExportSetting, names: Sequence[str]) -> str:
+    """What a setting means to some formats."""
+    default = setting.default
+    words = "" if default is None else f"{default:g}" if isinstance(default, float) else default
+    ending = f" [default: {words}]" if default is not None else ""
+    return f"{', '.join(names)}: {setting.meaning}{ending}"
+
+
+def _metavar(settings: Sequence[tuple[str, ExportSetting]]) -> str:
+    kinds = {setting.type_of_value for _, setting in settings}
+    return "TEXT" if str in kinds else "NUMBER"
+
+
+@click.command(cls=ExportCommand, params=[
+    click.Argument(["plans"], nargs=-1, type=INPUT, metavar="PLAN|FRONT ..."),
+    option("--output", "-o", type=Parsed("file", _output), required=True,
+           help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
+           "output."),
+])  # fmt: skip
+def export(given: Given) -> None:
+    """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB), as a film (gif, mp4) or a page.
+
+    The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
+    but math.h. The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
+    interpolation between them.
+
+    A film shows several PLANs side by side on one clock, one alone beside the plain cycloid of its
+    move. Links bend as their modes do; the picture says how far that is exaggerated. An mp4 needs
+    the program ffmpeg.
+
+    The page (html) is one file that needs no network. Of a saved FRONT one drags along the
+    trade-off and sees each point's motion; further fronts and plans of the move lie beside it.
+
+    A format of your own stands beside a plant in its --plant-file.
+
+    \b
+    Examples:
+      quietarm export plan.json --output move.c
+      quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
+      quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
+      quietarm export plan.json --output - --columns time,angle:deg
+      quietarm export moves.zarr --output moves.c
+      quietarm export plan.json zvd.json --output move.gif --speed 25%
+      quietarm export front.json nsga2.json --output front.html
+    """  # noqa: D301  # \b is click's: do not rewrap
+    form = _format(given)
+    settings = _settings(given, form)
+    if given.output != STDOUT:
+        form.check_path(given.output)
+    answers = _answers(form, given.plans)
+    if given.output == STDOUT:
+        made = form.make(answers, STDOUT, settings, lambda done, total: None)
+        content = made.files[STDOUT]
+        files: list[File] = [(STDOUT, lambda path: write_whole(path, content))]
+        return finish(files, *filter(None, made.notes))
+    with _progress(form) as report:
+        written, notes = write_in(form, answers, given.output, settings, report)
+    return finish([], *notes, *(f"wrote {path}" for path in written))
+
+
+def _progress(form: ExportFormat) -> AbstractContextManager[Progress | None]:
+    """Show that the work goes on, with what it counts where it counts."""
+    return counting(0, form.pieces) if form.pieces else busy("making the file")
+
+
+def _answers(form: ExportFormat, paths: Sequence[Path]) -> Mapping[str, Any]:
+    """What is exported, by what it is called, after its motions were evaluated again."""
+    if len(paths) == 1 and paths[0].is_dir():
+        if DATASET not in form.takes:
+            raise ValueError(
+                f"{paths[0]} has many moves, which are exported as {endings_of(DATASET)}; give "
+                "such a file"
+            )
+        from quietarm.studies.sweep.exported_moves import moves_to_export
+
+        return {paths[0].stem: moves_to_export(paths[0])}
+    form.refuse_number(len(paths))
+    return load_fronts_and_plans(paths) if FRONT in form.takes else load_plans(paths)
+
+
+def _format(given: Given) -> ExportFormat:
+    """The format by the file's ending; of standard output by --format."""
+    if given.output != STDOUT:
+        given.refuse(["form"], "is for --output - alone: a file's ending says its format")
+        return format_of(given.output)
+    possible = _to_stdout()
+    form = known_formats()[given.form or possible[0]]
+    if not form.to_stdout:
+        raise ValueError(
+            f"{form.name} cannot go to standard output, only {' and '.join(possible)}; give a "
+            f"name, as move{form.endings[0]}"
+        )
+    return form
+
+
+def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
+    """What was typed of the format's settings; those of other formats are refused."""
+    for other in known_formats().values():
+        for setting in other.settings:
+            takers = [taker.name for taker in takers_of(setting.name)]
+            if form.name not in takers:
+                why = f"is for {', '.join(takers)}, not for {form.name}"
+                given.refuse([setting.name], why)
+    typed = [setting for setting in form.settings if given.typed(setting.name)]
+    settings = {setting.name: _read(setting, getattr(given, setting.name)) for setting in typed}
+    return form.complete(settings) | settings_of_studies(form)
+
+
+def _read(setting: ExportSetting, text: str) -> Any:
+    """What was typed of a setting, as the value that it is."""
+    if setting.type_of_value is str:
+        return text
+    if setting.type_of_value is float:
+        if setting.unit not in UNITS:
+            text = text.strip().removesuffix(setting.unit)
+        return parse_quantity(text, setting.unit or "-", f"a value of {setting.option}")
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"{setting.option} is {text!r}; give a whole number") from None

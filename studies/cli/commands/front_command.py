@@ -1,0 +1,137 @@
+"""`quietarm front`: the trade-off of residual, energy and peaks by the gradient."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from quietarm.metaheuristics import PRESETS
+from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
+from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
+from quietarm.studies.answers.read_answers import load_front
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import (
+    BOUND,
+    OBJECTIVES,
+    ROBOT_PATH,
+    SEED,
+    SOLVER,
+    STARTS,
+    TASK,
+    YES,
+    busy,
+    command,
+    counting,
+    method_option,
+    option,
+    profile_options,
+)
+from quietarm.studies.cli.outputs import (
+    PICTURE,
+    answer_files,
+    check_page,
+    finish,
+    output_option,
+)
+from quietarm.studies.cli.quantities import parse_weights
+from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.views import pictures
+from quietarm.views.report.front_rows import failure_lines, gradient_lines, polish_lines
+
+_METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
+_SEARCHES = {
+    name: f"{name} is a metaheuristic; give quietarm search --method {name}" for name in PRESETS
+}
+
+
+@command(
+    *TASK, *ROBOT_PATH,
+    method_option(_METHODS, _SEARCHES, "epsilon",
+                  "Least energy at one residual limit after another (epsilon), or the least "
+                  "weighted sum for one pair of weights after another."),
+    *profile_options(), BOUND, OBJECTIVES,
+    option("--points", default=50,
+           help="Points of the front, with peaks about so many; epsilon has 0.1, 1 and 5 mm "
+           "besides."),
+    option("--weights", type=Parsed("weights", parse_weights), multiple=True, metavar="R:E",
+           help="weighted: weights of residual and energy, scaled to the ends of the front, as "
+           "1:3; in place of --points."),
+    STARTS, SEED, *SOLVER, YES,
+    option("--check", is_flag=True, help="Solve seven points by the other solver as well, from the "
+           "plain cycloid, and say by how much the two differ."),
+    option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
+           "method: from each to less energy and no larger residual."),
+    output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"},
+                  formats=["front"]),
+)  # fmt: skip
+def front(given: Given) -> None:
+    """Find the trade-off of residual, energy and peaks by the gradient.
+
+    \b
+    Examples:
+      quietarm front arm-on-flexible-link --target pi/2 --duration 0.8 --output front.json \\
+          --output front.csv --output front.png --output front.html
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --method weighted
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --check
+      quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 \\
+          --objectives residual,energy,peak-torque --output front.json --output front.png
+      quietarm front --polish nsga2.json --output polished.json --output polished.png
+    """  # noqa: D301  # \b is click's: do not rewrap
+    if given.polish is not None:
+        return _polish(given)
+    wanted = "points"
+    if given.weights:
+        if given.method != "weighted":
+            raise ValueError(f"--weights is for weighted, not for {given.method}; leave it out")
+        given.refuse(["points"], "is for weights that are chosen by the method")
+        wanted = "weights"
+    refuse_more_objectives(given.method, given.objectives)
+    check_page(given.output, given.objectives)
+    if given.check and given.objectives != RESIDUAL_AND_ENERGY:
+        raise ValueError(
+            "--check is for residual and energy; find the front again with the other --solver"
+        )
+    task = given.read_task()
+    profile = given.read_profile(task)
+    solver = given.read_solver()
+    total = len(given.weights) or given.points
+    options = given.pick(wanted, "bound", "starts", "seed")
+    if given.objectives != RESIDUAL_AND_ENERGY:
+        options |= given.pick("objectives")
+    with counting(total, wanted) as report:
+        solution = _METHODS[given.method](
+            task,
+            profile=profile,
+            report=report,
+            solver=solver,
+            **options,
+        )
+    # the ends come with weights, and epsilon has residuals of its own
+    with_ends = total + 2 * bool(given.weights)
+    points = max(with_ends, len(solution.points) + len(solution.failures))
+    if not solution.points:
+        reasons = "; ".join(line.strip() for line in failure_lines(solution, points)[1:])
+        raise SolverFailedError(f"no point was found: {reasons}")
+    checked = None
+    if given.check:
+        checked_points = 7
+        with counting(checked_points, "checked points") as report:
+            checked = cross_check(solution, checked_points=checked_points, report=report)
+    files = answer_files(given.output, lambda: pictures.front_figure([solution]), solution)
+    return finish(files, *gradient_lines(solution, points, checked))
+
+
+def _polish(given: Given) -> None:
+    given.refuse_others(
+        {"polish", "output", *(param.name or "" for param in SOLVER)},
+        "is not for --polish, which keeps the task, profile and bound of its front",
+    )
+    with busy("checking"):
+        before = load_front(given.polish)
+    with counting(len(before.points), "points") as report:
+        polished = polish_front(before, solver=given.read_solver(), report=report)
+    lines = polish_lines(before, polished.front, polished.gains)
+    files = answer_files(
+        given.output, lambda: pictures.polish_figure(before, polished), polished.front, [before]
+    )
+    finish(files, *lines)

@@ -1,0 +1,216 @@
+"""`quietarm identify`: a plant's parameters from recordings of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+
+import click
+
+from quietarm.machine import Recording
+from quietarm.machine import identify as identification
+from quietarm.machine.identify.identified import is_modal
+from quietarm.machine.recordings.read_recording import (
+    Columns,
+    ReadRecording,
+    notes_in_words,
+    read_recording,
+)
+from quietarm.models import Plant
+from quietarm.models.dimensions import words_of
+from quietarm.ocp.checks import has_no
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import SET, busy, command, option
+from quietarm.studies.cli.outputs import PICTURE, answer_files, ending_of, finish, output_option
+from quietarm.studies.cli.plants import Kind, parse_plant
+from quietarm.studies.cli.quantities import (
+    once,
+    parse_interval,
+    parse_rate,
+    parse_scales,
+    parse_units,
+)
+from quietarm.studies.cli.types import INPUT, NAMES, Parsed
+from quietarm.views import pictures
+from quietarm.views.report.machine_rows import (
+    machine_notes,
+    machine_rows,
+    nothing_predicted,
+    prediction_rows,
+    refuse_defaults,
+)
+
+_UNITS = ("As time:ms,angle:deg,tip:mm,acceleration:g, of a linear axis angle:mm,torque:N. "
+          "[default: those of the columns' names, or SI]")  # fmt: skip
+
+
+def _once(name: str, words: str) -> click.Option:
+    """An option that takes one column: given twice it is refused, where click takes the last."""
+    return click.Option([name], multiple=True, help=words, callback=_alone)
+
+
+def _alone(context: click.Context, option: click.Parameter, names: tuple[str, ...]) -> str | None:
+    if len(names) > 1:
+        raise click.UsageError(f"{option.opts[0]} is given {len(names)} times; give it once")
+    return names[0] if names else None
+
+
+@command(
+    click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
+    SET,
+    _once("--time", "Column of the time.  [default: the one that is called so, or the first if it "
+          "rises evenly]"),
+    option("--rate", type=Parsed("rate", parse_rate), help="Samples per second, as 1kHz, of files "
+           "without a column of the time."),
+    _once("--angle", "Column of the joint's angle, of a linear axis its position; without it the "
+          "joint was held."),
+    option("--tip", multiple=True, help="Column of a tip's displacement."),
+    option("--acceleration", multiple=True, help="Column of an accelerometer at a tip."),
+    _once("--torque", "Column of the joint's torque, of a linear axis its force."),
+    option("--units", type=Parsed("units", parse_units), help=_UNITS),
+    option("--scale", "scales", type=Parsed("scale", parse_scales), multiple=True,
+           help="What a count is in SI units, as angle=2pi/4096,tip=1e-5."),
+    option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
+           help="Begin and end of a ring-down [s], as 3.2:7.3. [default: they are found]"),
+    option("--free", type=NAMES, help="The parameters that are sought, as omega,zeta. [default: "
+           "frequencies and dampings, and with a torque what shows in it alone]"),
+    option("--assume", type=NAMES, help="Parameters that keep the plant's own default in the "
+           "machine's file, as hub_inertia,friction, or all: neither the recordings nor --set tell "
+           "them."),
+    option("--check", type=Parsed("machine", parse_plant), help="An identified machine: how much "
+           "of the recordings it predicts. PLANT is left out."),
+    output_option({".json": "the machine, which serves as a PLANT",
+                   PICTURE: "a picture of the fit"}),
+)  # fmt: skip
+def identify(given: Given) -> None:
+    """Fit parameters of PLANT to each RECORDING of a machine: csv, npy, or MATLAB's up to v7.
+
+    Ring-downs are found, and each is fitted alone; two intervals tell how well the mean is known,
+    and where the next swing will be. Where the joint's angle is recorded, its motion counts, too.
+
+    \b
+    Examples:
+      quietarm identify push*.csv flexible-beam --tip tip_mm --output arm.json --output fit.png
+      quietarm identify run*.mat flexible-beam --time t --angle theta --tip w --output arm.json
+      quietarm identify --check arm.json new.csv --tip tip_mm
+      quietarm plan arm.json --error measured --target 60deg --duration 0.9
+    """  # noqa: D301  # \b is click's: do not rewrap
+    kind = given.check or _plant_at_the_end(str(given.files[-1]))
+    paths = given.files if given.check else given.files[:-1]
+    if not paths:
+        raise click.UsageError("give a RECORDING before PLANT")
+    plant = given.read_plant(kind)
+    read = _read(given, paths, plant)
+    recordings = [one.recording for one in read]
+    notes = notes_in_words(read)
+    if given.check:
+        return _check(given, plant, recordings, notes)
+    known = dict(given.parameters).keys()
+    told_otherwise = {*known, *_assumed(given.assume, plant)}
+    if isinstance(kind, identification.Identified):
+        told_otherwise |= plant.measured.keys()
+    saves = any(ending_of(path) != PICTURE for path in given.output)
+    if saves:  # what no recording tells is known before they are fitted
+        sought = identification.sought(recordings, plant, given.free)
+        refuse_defaults(plant, _others(plant, {*sought, *told_otherwise}))
+    with busy("fitting"):
+        machine = identification.identify(recordings, plant, given.free, given.parts)
+    machine = machine.with_given(plant, known)
+    if saves:
+        told = set(plant.measured) - set(machine.untold)
+        refuse_defaults(plant, _others(plant, told | told_otherwise))
+    files = answer_files(
+        given.output,
+        lambda: pictures.identification_figure(machine, recordings),
+        machine,
+    )
+    return finish(
+        files,
+        machine_rows(machine, known),
+        *machine_notes(machine, not given.angle, known),
+        *notes,
+    )
+
+
+def _others(plant: Plant, names: Collection[str]) -> list[str]:
+    """The parameters of a plant that are none of these."""
+    return [name for name in plant.measured if name not in names]
+
+
+def _read(given: Given, paths: Sequence[Path], plant: Plant) -> list[ReadRecording]:
+    """The recordings of files, by the columns that were named."""
+    # columns of which at least one shows how the machine rings
+    rings = ("tip", "acceleration", "torque")
+    names = {
+        quantity: [column] if isinstance(column, str) else list(column or ())
+        for quantity, column in given.pick("time", "angle", *rings).items()
+    }
+    if not any(names[quantity] for quantity in rings):
+        raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
+    if given.rate and given.time:
+        raise click.UsageError("--rate is for files without a column of the time; leave --time out")
+    units = given.units or {}
+    scales = once(chain.from_iterable(given.scales), "--scale ")
+    _refuse_idle(names, {"--units": units, "--scale": scales}, plant.joint, given.rate is not None)
+    columns = Columns(names, units, scales, given.rate, plant.joint)
+    short = len({path.name for path in paths}) == len(paths)
+    return [read_recording(path, columns, path.name if short else str(path)) for path in paths]
+
+
+def _refuse_idle(
+    names: Mapping[str, Sequence[str]],
+    options: Mapping[str, Mapping[str, object]],
+    joint: str,
+    has_rate: bool,
+) -> None:
+    """Refuse units and scales of quantities of which no column is read."""
+    read = {quantity for quantity, columns in names.items() if columns}
+    read |= set() if has_rate else {"time"}
+    read |= {words_of(quantity).of(joint) for quantity in read}
+    for option_name, entries in options.items():
+        for quantity in entries:
+            if quantity not in read:
+                raise click.UsageError(
+                    f"{option_name} has {quantity}, and no column of it is read; leave it out"
+                )
+
+
+def _assumed(names: Sequence[str] | None, plant: Plant) -> Collection[str]:
+    """The parameters that keep the plant's own values: none that a ring-down tells."""
+    may_stand = [name for name in plant.measured if not is_modal(plant, name)]
+    if not names:
+        return ()
+    if [*names] == ["all"]:
+        return may_stand
+    for name in names:
+        if name not in plant.measured:
+            raise ValueError(has_no(plant.name, "parameter", name, plant.measured))
+        if name not in may_stand:
+            raise ValueError(
+                f"--assume {name}: a ring-down tells it; record one, or give it by --set {name}=..."
+            )
+    return names
+
+
+def _check(
+    given: Given, plant: Plant, recordings: Sequence[Recording], notes: Sequence[str]
+) -> None:
+    """Show how much of recordings a machine predicts; an error where it is nothing."""
+    given.refuse(["output", "parts", "free", "assume"], "is not for --check, which fits nothing")
+    note = "The state is taken from two periods, and the five after them are predicted."
+    predictions = identification.predict(plant, recordings)
+    warnings = [
+        f"warning: {recording.name}: {change}"
+        for recording in recordings
+        for change in recording.mended.values()
+    ]
+    rows = prediction_rows(plant, predictions)
+    finish([], rows, note, *warnings, *notes, trouble=nothing_predicted(plant, predictions))
+
+
+def _plant_at_the_end(name: str) -> Kind:
+    try:
+        return parse_plant(name)
+    except ValueError as error:
+        raise click.BadParameter(f"{error}; PLANT comes last, after the recordings") from None

@@ -1,1 +1,0 @@
-"""A page in the browser on which a move is changed by hand: what it shows, and its widgets."""

@@ -1,0 +1,3 @@
+"""A browser for the tests of the page."""
+
+from in_browser import chromium, open_page  # noqa: F401

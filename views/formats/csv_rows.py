@@ -1,0 +1,29 @@
+"""A move as comma-separated values under a heading."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from quietarm.ocp import Plan
+from quietarm.ocp.escapes import csv_table
+from quietarm.views.formats.between_rows import note_of_rows
+from quietarm.views.formats.export_format import ExportFormat
+from quietarm.views.formats.move_tables import COLUMNS, RATE, table
+
+
+class CsvRows(ExportFormat):
+    """Chosen columns, in chosen units, at a rate."""
+
+    name = "csv"
+    endings = (".csv",)
+    meaning = "a table"
+    settings = (COLUMNS, RATE)
+    to_stdout = True
+
+    def content(self, plan: Plan, *args: Any, columns: str, rate: float) -> str:
+        """A heading, and a row a tick."""
+        return csv_table(table(plan, columns, rate), "%.12g")
+
+    def note(self, plan: Plan, *args: Any, columns: str, rate: float) -> str:
+        """What a controller leaves that interpolates between the rows, where that matters."""
+        return note_of_rows(plan, columns, rate)
