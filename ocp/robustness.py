@@ -32,6 +32,8 @@ _STEP = 1e-4
 """Relative error to either side: of what follows 1e-8 is curvature, and 1e-6 the integrator's."""
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""
+_ALONG_ROUGHLY = {1: 51, 2: 21, 3: 9, 4: 5}
+"""The same where peaks are looked for that are to become scenarios."""
 _ALONG_BY_CVODES = {1: 41, 2: 9, 3: 5, 4: 3}
 """The same where each takes some milliseconds."""
 
@@ -96,10 +98,10 @@ def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
 
 
-def peaks_between(candidate: Candidate, most: int = 4) -> list[Worst]:
+def peaks_between(candidate: Candidate, most: int = 4, roughly: bool = False) -> list[Worst]:
     """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first.
 
-    A task that is certain has none.
+    On a coarser grid a narrow peak may be missed. A task that is certain has none.
     """
     ranges = candidate.task.ranges
     if not ranges:
@@ -108,7 +110,8 @@ def peaks_between(candidate: Candidate, most: int = 4) -> list[Worst]:
     def residuals(errors: Array) -> Array:
         return _along_errors(candidate, ranges, errors).residual
 
-    return _peaks(residuals, candidate, ranges, _ALONG[len(ranges)], most)
+    along = (_ALONG_ROUGHLY if roughly else _ALONG)[len(ranges)]
+    return _peaks(residuals, candidate, ranges, along, most)
 
 
 def _peaks(

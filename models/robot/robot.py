@@ -707,12 +707,18 @@ class RobotOnPath(Plant):
             place = Place(self.tables.knots, path.angle, terms)
             return {name: place.values(table) for name, table in tables.items()}
         place = self.tables.at(path.angle)
-        coefficients = {
-            name: place.values(table) for name, table in self.tables.groups[group].items()
-        }
-        for powers, groups in variations_of(self.robot, self.path, tuple(errors)).items():
-            factor = _power(errors.values(), powers)
-            for name, table in groups[group].items():
+        nominal = self.tables.groups[group]
+        variations = variations_of(self.robot, self.path, tuple(errors))
+        changes = [groups[group] for groups in variations.values()]
+        factors = [_power(errors.values(), powers) for powers in variations]
+        if all(map(place.takes_by_row, factors)):
+            return {
+                name: place.values_of_sum([table, *(entry[name] for entry in changes)], factors)
+                for name, table in nominal.items()
+            }
+        coefficients = {name: place.values(table) for name, table in nominal.items()}
+        for factor, entry in zip(factors, changes):
+            for name, table in entry.items():
                 change = place.values(table)
                 coefficients[name] = _added(coefficients[name], factor, change)
         return coefficients

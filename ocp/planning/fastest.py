@@ -11,9 +11,12 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.ocp.planning.best_of_starts import is_beyond
 from quietarm.ocp.planning.choose_profile import SIX
 from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
@@ -34,6 +37,7 @@ from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 _GROWTH = 1.5
 """By which a duration along a given profile grows where it fails."""
+_BEYOND = "every motion found exceeds a limit by 0.05 of it or more"
 _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
 
 
@@ -146,16 +150,19 @@ def _fastest_on_spline(request: Request, tolerance: float) -> Fastest:
     except ValueError as error:
         raise InfeasibleTaskError(f"no duration was found: {error}") from None
     failed = {least.too_short: _why_too_short(task, least)}
-    request = replace(request.along(least.profile, least.coefficients), quick=True)
+    steps = least.steps if request.steps is None else request.steps
+    along = request.along(least.profile, least.coefficients)
+    along = replace(along, steps=steps, quick=True)
     for margin in _margins(task):
         duration = (1 + margin) * least.duration
         try:
-            plan = plan_along(request.on(replace(task, duration=duration)))
+            plan = plan_along(along.on(replace(least.task, duration=duration)))
         except SolverFailedError as error:
             failed[duration] = str(error)
             continue
         settings = dict(plan.record.settings)
         settings.pop("guess", None)
+        settings["steps"] = request.steps
         return Fastest(plan.restated(settings=settings), _longest_first(failed))
     longest, why = max(failed.items())
     raise InfeasibleTaskError(f"no duration up to {longest:.3g} s will do: {why}")
@@ -168,7 +175,7 @@ def _margins(task: PointToPoint) -> tuple[float, ...]:
     nodes. The worst case of an uncertain plant may lie between the scenarios as well.
     """
     wide = (2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2)
-    return (5e-4, 1e-3, *wide) if task.uncertainty is None else wide
+    return (5e-4, 1e-3, *wide) if task.uncertainty is None else (1e-3, *wide)
 
 
 def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
@@ -238,10 +245,15 @@ class _Tried:
         guess = None if self.best is None else self.best.coefficients
         request = self.request.on(task)
         request = replace(request, thorough=self._thorough)
+        along = request.along(self.request.profile, guess)
         if self._thorough:
             self._explained.add(duration)
+        elif guess is not None and is_beyond(along.problem(), np.array(guess)):
+            # far out of reach a solver takes all its iterations to say so
+            self.failed[duration] = _BEYOND
+            return False
         try:
-            self.best = plan_along(request.along(self.request.profile, guess))
+            self.best = plan_along(along)
         except SolverFailedError as error:
             self.failed[duration] = str(error)
             return False

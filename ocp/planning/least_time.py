@@ -22,7 +22,9 @@ from quietarm.ocp.planning.rigid_motion import (
     rigid_duration,
     rigid_motion,
 )
+from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
 from quietarm.ocp.profiles.joint_spline import JointSpline
+from quietarm.ocp.robustness import peaks_between
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.solvers.least_excess import Excess, least_excess
 from quietarm.ocp.solvers.problem import (
@@ -37,8 +39,14 @@ _SAMPLES = 4001
 """Of the acceleration, for the knots."""
 _ROUNDS = 3
 """Of knots."""
+_WORST_ROUNDS = 4
+"""Of worst cases that become scenarios."""
+_FINER = 2
+"""Times the steps of the first rounds: on these limits are passed between the nodes by 1e-3."""
 _GAIN = 5e-3
 """A round that shortens the move by a smaller share is the last."""
+_HOPELESS = 0.8
+"""Share of an excess that is left by other knots: where it is more, none will do."""
 _GROWTH = 1.3
 """By which a duration that is too short grows."""
 
@@ -46,7 +54,8 @@ _GROWTH = 1.3
 class LeastTime(NamedTuple):
     """The shortest duration [s] that was found, the motion of it, and the longest one that failed.
 
-    The latter comes with the least share by which its limits are exceeded.
+    The latter comes with the least share by which its limits are exceeded; the task has the
+    motion's worst cases as scenarios. The motion has so many steps.
     """
 
     duration: float
@@ -54,6 +63,8 @@ class LeastTime(NamedTuple):
     profile: JointSpline
     too_short: float
     excess: float
+    task: PointToPoint
+    steps: int
 
 
 def least_time(
@@ -84,6 +95,14 @@ def least_time(
             durations = following
         if gain < _GAIN:
             break
+    finer = _FINER * best.steps
+    for _ in range(_WORST_ROUNDS):
+        uncertain = durations.with_worst_cases(best)
+        if uncertain is None:
+            break
+        # on as many steps as the plan takes, which then need not be compiled again
+        durations = _Durations(uncertain, best.profile, residual_limit, bound, fewest_steps=finer)
+        best = durations.least(best.duration, (1 + _GAIN) * best.duration, tolerance)
     if durations.widen_margins(best):
         best = durations.least(best.duration, (1 + _GAIN) * best.duration, tolerance)
     return best
@@ -95,11 +114,15 @@ def fitting_spline(
     """A spline and coefficients that keep a task's limits in its duration; None if none do."""
     shaped = _shaped_rigid_motion(task)
     knots = _knots_at(shaped)
+    least = math.inf
     for _ in range(1 + _ROUNDS):
         profile = JointSpline(knots)
         excess = _Durations(task, profile, residual_limit, bound).excess(task.duration)
         if excess.holds and excess.share <= 0:
             return profile, excess.coefficients
+        if excess.holds and excess.share > _HOPELESS * least:
+            return None
+        least = excess.share if excess.holds else least
         knots = _knots_along(profile, excess.coefficients)
     return None
 
@@ -190,13 +213,14 @@ class _Durations:
         residual_limit: float,
         bound: float | None,
         most_steps: int = MOST_SOLVER_STEPS,
+        fewest_steps: int = 0,
     ) -> None:
         self._most_steps = most_steps
         self._task = task
         self._profile = profile
         self._residual_limit = residual_limit
         self._bound = bound
-        self._steps = 0
+        self._steps = fewest_steps
         self._margins = {limit.name: self.margin for limit in task.limits}
         if "speed" in self._margins:
             self._margins["speed"] = self.margin_of_speed
@@ -227,11 +251,22 @@ class _Durations:
         ]
         return problem.asking(limits=tuple(limits))
 
+    def with_worst_cases(self, least: LeastTime) -> PointToPoint | None:
+        """The task with what passes the residual's limit between its scenarios; None if nothing."""
+        if self._task.uncertainty is None:
+            return None
+        peaks = peaks_between(self._motion(least), roughly=True)
+        above = [peak for peak in peaks if peak.residual > (1 + self.margin) * self._residual_limit]
+        scenarios = new_scenarios(self._task, above)
+        return with_moved_scenarios(self._task, scenarios) if scenarios else None
+
+    def _motion(self, least: LeastTime) -> Candidate:
+        task = replace(self._task, duration=least.duration)
+        return Candidate.of_profile(task, self._profile, least.coefficients)
+
     def widen_margins(self, least: LeastTime) -> bool:
         """Whether a motion passes limits by more than their margins, which are wider then."""
-        task = replace(self._task, duration=least.duration)
-        motion = Candidate.of_profile(task, self._profile, least.coefficients)
-        exceeded = motion.exceeded(task.limits)
+        exceeded = self._motion(least).exceeded(self._task.limits)
         for name, ratio in exceeded.items():
             self._margins[name] += self.room * (ratio - 1)
         self._shortest = None
@@ -263,6 +298,8 @@ class _Durations:
             self._profile,
             too_short=self._too_short.duration,
             excess=self._too_short.share,
+            task=self._task,
+            steps=self._steps,
         )
 
     def _probe(self, duration: float) -> _Probe:

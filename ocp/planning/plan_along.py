@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +17,21 @@ from numpy.typing import NDArray
 from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.planning.best_of_starts import best_of_starts, solve_from_starts
-from quietarm.ocp.planning.certify import OVERRUN, certify_one
+from quietarm.ocp.planning.best_of_starts import (
+    SAME,
+    best_of_starts,
+    is_beyond,
+    minimum_of,
+    solve_from_starts,
+)
+from quietarm.ocp.planning.certify import OVERRUN, by_cvodes, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
+from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
 from quietarm.ocp.record import REST
-from quietarm.ocp.robustness import Worst
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.robustness import Worst, peaks_between
+from quietarm.ocp.solvers.problem import Program, Solution
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
@@ -32,6 +40,12 @@ _ROUNDS = 6
 """Most rounds that add a plan's `peaks` as scenarios."""
 _TIGHTENINGS = 4
 """Most times that the limit is tightened by the remaining excess."""
+_MOST_MOTIONS = 4
+"""Of the nominal plant, from which a robust plan starts."""
+_NOMINAL_STARTS = 8
+"""Most starts of a robust plan, these motions and given ones, unless more are asked for."""
+_BETWEEN = 2e-4
+"""Share of the limit that is left to the worst case where it is beside a scenario."""
 
 Array = NDArray[np.float64]
 
@@ -67,20 +81,19 @@ def _adapt_limit(request: Request) -> Plan:
     """
     request = replace(request, quick=False)
     starts = request.guesses
-    nominal = _nominal_plan(request)
+    nominal, motions = _nominal_plan(request)
     nominal_worst = np.inf
     if nominal is not None and nominal.worst is not None:
         nominal_worst = nominal.worst.residual
-        starts = [np.array(nominal.coefficients), *starts]
+        # of many random starts, as networks take them, those stand for the others that led there
+        starts = [*motions, *starts[: max(request.starts, _NOMINAL_STARTS - len(motions))]]
     most = max(nominal_worst, REST * request.task.smallness)
     limit = min(request.residual_limit, most)
     try:
-        plan = _hold(request.within(limit), starts)
+        plan = _hold(request.within(limit), starts, gives_up=True)
     except InfeasibleTaskError:
         least = _least_residual(request, starts)
-        if least is None:
-            raise
-        limit = min((1 + EXCESS) * least, most)
+        limit = limit if least is None else min((1 + EXCESS) * least, most)
         plan = _hold(request.within(limit), starts)
     assert plan.worst is not None
     if plan.excess is None or plan.excess <= OVERRUN:
@@ -91,15 +104,19 @@ def _adapt_limit(request: Request) -> Plan:
     return plan.with_entries(residual_limit=plan.worst.residual)
 
 
-def _nominal_plan(request: Request) -> Plan | None:
-    """The plan at rest of the nominal plant, for the uncertain task; None where there is none."""
+def _nominal_plan(request: Request) -> tuple[Plan | None, list[Array]]:
+    """The plan at rest of the nominal plant, for the uncertain task; None where there is none.
+
+    And the coefficients of some that were solved, itself first.
+    """
     nominal = request.on(request.task.certain).within(0.0)
     try:
         refuse_too_short(nominal.task, arrives_at_rest(nominal.task, nominal.residual_limit))
-        plan = _hold(nominal, request.guesses)
+        plan, motions = plan_from_starts(nominal, request.guesses)
     except SolverFailedError:  # only other motions may keep the limits
-        return None
-    return plan.on(request.task)
+        return None, []
+    motions = [np.array(plan.coefficients), *motions[1:_MOST_MOTIONS]]
+    return plan.on(request.task), motions
 
 
 def _least_residual(request: Request, starts: list[Array]) -> float | None:
@@ -109,15 +126,36 @@ def _least_residual(request: Request, starts: list[Array]) -> float | None:
     return stillest.residual if stillest.status.solved else None
 
 
-def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
+class _Solved(NamedTuple):
+    """A problem, its best solution from some starts, the coefficients of all, and how long it took.
+
+    The cheapest come first; of those that cost the same there is one.
+    """
+
+    problem: Program
+    best: Solution
+    motions: list[Array]
+    seconds: float
+
+    @property
+    def peaks(self) -> list[Worst]:
+        """Peaks of the best motion's residual between the scenarios, before it is certified."""
+        return peaks_between(by_cvodes(self.problem, self.best.coefficients), roughly=True)
+
+
+def _hold(
+    request: Request, starts: list[Array], most_starts: int = 4, gives_up: bool = False
+) -> Plan:
     """The plan whose residual limit holds between the scenarios as well, if that can be had.
 
     Where its residual exceeds the limit between them by more than `EXCESS`, those peaks become
     scenarios, and of the motions that were found so many are the next starts. The limit is then
     divided by the remaining excess; where that does not settle it, they become scenarios as well.
+    A search that gives up looks for nothing else where no start leads to a limit far out of reach.
     """
     limit = request.residual_limit
-    plan, solved = plan_from_starts(request, starts)
+    request, solved = _solve_with_the_worst(request, starts, most_starts, gives_up)
+    plan = _certified_plan(request, solved)
     between = list(plan.peaks)
     tightened = limit
     rounds = 0
@@ -125,7 +163,7 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
     while between:
         excess = between[0].residual / limit - 1
         above = [peak for peak in between if peak.residual > limit]
-        scenarios = _new_scenarios(request.task, above)
+        scenarios = new_scenarios(request.task, above)
         can_add = bool(scenarios) and rounds < _ROUNDS
         can_tighten = excess > 0 and tightenings < _TIGHTENINGS
         starts = [np.array(plan.coefficients)]
@@ -138,7 +176,7 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
             known = request.task.scenarios[1:]
             request = request.on(request.task.with_samples([*known, *scenarios]))
             following = request
-            starts += solved[:most_starts]
+            starts += solved.motions[:most_starts]
         elif can_tighten:
             tightenings += 1
             tightened /= (1 + excess) * (1 + OVERRUN)
@@ -146,9 +184,10 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
         else:
             break
         try:
-            another, solved_now = plan_from_starts(following, starts)
+            again = _solve_near(following, starts) if tightenings else _solve(following, starts)
+            another = _certified_plan(following, again)
             between = list(another.peaks)
-            plan, solved = another, solved_now
+            plan, solved = another, again
         except SolverFailedError:
             if not tightenings:
                 raise
@@ -156,12 +195,49 @@ def _hold(request: Request, starts: list[Array], most_starts: int = 4) -> Plan:
     return plan.with_entries(residual_limit=limit)
 
 
-def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
-    """The plan from starts, whose limit holds in all scenarios.
+def _solve_with_the_worst(
+    request: Request, starts: list[Array], most_starts: int, gives_up: bool
+) -> tuple[Request, _Solved]:
+    """The request with the worst cases of its solution as scenarios, and that solution.
 
-    And the coefficients of all that were solved, cheapest first. Errors are those of
-    `solve_from_starts` and `certify`.
+    They are looked for before anything is certified, which takes several solves. A worst case that
+    is near one of those replaces it. A limit that is hardly exceeded is tightened by as much.
     """
+    limit = request.residual_limit
+    solved = _solve(request, starts, gives_up)
+    for _ in range(_ROUNDS if request.task.ranges and limit > 0 else 0):
+        peaks = solved.peaks
+        excess = peaks[0].residual / limit - 1
+        above = [peak for peak in peaks if peak.residual > (1 + OVERRUN) * limit]
+        scenarios = new_scenarios(request.task, above)
+        if not scenarios:
+            if new_scenarios(request.task, peaks[:1]) and excess > -_BETWEEN:
+                tightened = limit / (1 + max(excess, 0.0) + _BETWEEN)
+                return request, _solve_near(request.within(tightened), solved.motions)
+            break
+        following = request.on(with_moved_scenarios(request.task, scenarios))
+        try:
+            if excess > EXCESS:
+                near = solved.motions[:most_starts]
+                solved = _solve(following, near, gives_up)
+            else:
+                solved = _solve_near(following, solved.motions)
+        except SolverFailedError:
+            if excess > EXCESS:
+                raise
+            break  # so little may be had by a tighter limit
+        request = following
+    return request, solved
+
+
+def _solve(request: Request, starts: Sequence[Array], gives_up: bool = False) -> _Solved:
+    """What starts lead to, with the errors of `solve_from_starts`."""
+    if gives_up and not request.quick:
+        try:
+            return _solve(replace(request, quick=True), starts)
+        except InfeasibleTaskError:
+            if is_beyond(request.problem(), starts[0]):
+                raise
     began = time.perf_counter()
     problem = request.problem()
     best, solved = solve_from_starts(
@@ -172,10 +248,43 @@ def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, l
         thorough=request.thorough,
         has_stand_in=request.has_stand_in,
     )
-    certified = certify_one(problem, best, request.solver)
+    minima = [minimum_of(solution, problem) for solution in solved]
+    cheaper = [-np.inf, *((1 + SAME) * minimum for minimum in minima)]
+    distinct = [
+        solution.coefficients
+        for solution, minimum, most in zip(solved, minima, cheaper)
+        if minimum > most
+    ]
+    return _Solved(problem, best, distinct, time.perf_counter() - began)
+
+
+def _solve_near(request: Request, starts: Sequence[Array]) -> _Solved:
+    """The same from a start that is nearly a solution, or from anew where that leads nowhere."""
+    began = time.perf_counter()
+    problem = request.problem()
+    (best,) = best_of_starts([problem], [starts[:1]], request.solver, warm=True)
+    if not best.status.solved:
+        return _solve(request, starts)
+    return _Solved(problem, best, [best.coefficients], time.perf_counter() - began)
+
+
+def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, list[Array]]:
+    """The plan from starts, whose limit holds in all scenarios.
+
+    And the coefficients of all that were solved, cheapest first. Errors are those of
+    `solve_from_starts` and `certify`.
+    """
+    solved = _solve(request, starts)
+    return _certified_plan(request, solved), solved.motions
+
+
+def _certified_plan(request: Request, solved: _Solved) -> Plan:
+    """The plan of a solution, judged by CVODES."""
+    began = time.perf_counter() - solved.seconds
+    certified = certify_one(solved.problem, solved.best, request.solver)
     assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
     solution = certified.solution
-    plan = Plan.of_candidate(
+    return Plan.of_candidate(
         certified.checked,
         status=solution.status,
         record=request.record(
@@ -185,15 +294,3 @@ def plan_from_starts(request: Request, starts: Sequence[Array]) -> tuple[Plan, l
         residual_limit=request.residual_limit,
         shadow_prices=solution.shadow_prices,
     )
-    return plan, [solution.coefficients for solution in solved]
-
-
-def _new_scenarios(task: PointToPoint, peaks: list[Worst], same: float = 1e-6) -> list[list[float]]:
-    """The errors of those peaks that are no scenario of the task yet.
-
-    Errors that differ by less than the share `same` of their range are one scenario.
-    """
-    known = np.array(task.scenarios[1:])
-    near = same * np.array(list(task.ranges.values()))
-    errors = [list(peak.errors.values()) for peak in peaks]
-    return [error for error in errors if (np.abs(known - error) > near).any(axis=1).all()]

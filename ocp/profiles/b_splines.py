@@ -10,16 +10,20 @@ from quietarm.models.joint_motion import is_zero
 
 
 def spline(
-    knots: Sequence[float], degree: int, points: Sequence[Expression], at: Expression
+    knots: Sequence[float],
+    degree: int,
+    points: Sequence[Expression],
+    at: Expression,
+    derivatives: int = 2,
 ) -> list[Expression]:
-    """A spline of control points on knots that rise, and its first two derivatives.
+    """A spline of control points on knots that rise, and its first derivatives.
 
     There are as many points as knots, plus the degree, less one. The spline begins at the first
     point and ends at the last one.
     """
     clamped = [knots[0]] * degree + list(knots) + [knots[-1]] * degree
     values = list[Expression]()
-    for order in range(degree, degree - 3, -1):
+    for order in range(degree, degree - derivatives - 1, -1):
         basis = b_splines(clamped, order, at)
         values.append(sum(point * B for point, B in zip(points, basis)))
         clamped = clamped[1:-1]

@@ -69,6 +69,11 @@ class JointProfile(ABC):
         """How large the profile is, as 6 coefficients."""
         return f"{self.size} {self.term}{'s' if self.size != 1 else ''}"
 
+    def steps_between_breaks(self, steps: int) -> int:
+        """The least between two of its `breaks`, of so many steps of the whole move."""
+        del steps
+        return self.steps_of_a_piece
+
     @property
     def label(self) -> str:
         """What the profile is called in a message."""
@@ -137,6 +142,15 @@ class JointProfile(ABC):
             lambda at: [self.angle(coefficients, at)], fraction, coefficients, order=2
         )
         return share, rate, bend
+
+    def table(self, fractions: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """The share of the way and its first three derivatives, if linear in the coefficients.
+
+        Shape (1 + size, 4, fractions): of no coefficients, and what a unit of each adds. None where
+        there are no numbers for it, or none that save anything.
+        """
+        del fractions
+        return None
 
     def motion_of(
         self,

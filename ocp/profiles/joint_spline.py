@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,6 +82,11 @@ class JointSpline(JointProfile):
         """The knots."""
         return self.knots
 
+    def steps_between_breaks(self, steps: int) -> int:
+        """More where the move has more: else a piece as short as a step would never get finer."""
+        coarsest = 80
+        return self.steps_of_a_piece * max(1, steps // coarsest)
+
     @property
     def places(self) -> NDArray[np.float64]:
         """Where the B-splines of the coefficients act, as fractions of the duration: (size,)."""
@@ -96,16 +102,27 @@ class JointSpline(JointProfile):
 
     def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
         """The spline and its derivatives, splines of a lower degree."""
+        share, rate, bend = self._spline(coefficients, fraction, 2)
+        return share, rate, bend
+
+    def table(self, fractions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The spline by its coefficients: its B-splines, which depend on time alone."""
+        at = np.asarray(fractions, dtype=float).ravel()
+        units = np.vstack([np.zeros(self.size), np.eye(self.size)])
+        orders = self._spline(list(units.T[:, :, None]), at, 3)
+        table = np.stack(np.broadcast_arrays(*orders), axis=1)
+        table[1:] -= table[0]
+        return table
+
+    def _spline(
+        self, coefficients: Sequence[Any], fraction: Expression, derivatives: int
+    ) -> list[Expression]:
+        """The spline and so many derivatives."""
         turn = 2 * math.pi
         plain = [at - math.sin(turn * at) / turn for at in self.places.tolist()]
         free = [height + a for height, a in zip(plain, coefficients)]
         begin = [0.0] * self.points_at_rest
         end = [1.0] * self.points_at_rest
         points = [*begin, *free, *end]
-        share, rate, bend = spline(
-            [0.0, *self.knots, 1.0],
-            self.degree,
-            points,
-            fraction,
-        )
-        return share, rate, bend
+        knots = [0.0, *self.knots, 1.0]
+        return spline(knots, self.degree, points, fraction, derivatives)

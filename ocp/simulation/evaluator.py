@@ -48,9 +48,9 @@ class Values:
     arrival: Array
     limited: Array
 
-    def take(self, rows: slice) -> Self:
-        """Some rows."""
-        return type(self)(**{name: part[rows] for name, part in vars(self).items()})
+    def take(self, row: int) -> Self:
+        """One row, or of arrays by candidate and scenario one candidate."""
+        return type(self)(**{name: part[row] for name, part in vars(self).items()})
 
 
 class Evaluator:
@@ -348,7 +348,8 @@ def simulate(
 
 @lru_cache(maxsize=RECENT)
 def _compiled_values(simulation: Simulation) -> RowFunction:
-    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, 100))
+    largest = 100 if simulation.plant.steps_at_once == 1 else 32  # see `Batch`
+    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, largest))
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:

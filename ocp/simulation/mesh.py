@@ -80,6 +80,11 @@ class Mesh:
         return rows[:-1], rows[-1]
 
 
+def mesh_of(profile: JointProfile, steps: int, breaks: tuple[float, ...]) -> Mesh:
+    """So many steps of a move along a profile, or somewhat more where it breaks."""
+    return Mesh(steps, breaks, profile.steps_between_breaks(steps))
+
+
 def default_steps(task: PointToPoint, least: int = ROLLOUT_STEPS) -> int:
     """Steps for the profile (`least`), and 2 a radian of the fastest mode of all scenarios."""
     plants = task.perturbed_plants

@@ -24,7 +24,7 @@ from quietarm.ocp.simulation.collocation import (
     collocate,
     modal_system,
 )
-from quietarm.ocp.simulation.mesh import Mesh
+from quietarm.ocp.simulation.mesh import Mesh, mesh_of
 from quietarm.ocp.simulation.objective import spent
 from quietarm.ocp.uncertainty import perturb_plant
 
@@ -98,7 +98,7 @@ class Simulation(NamedTuple):
     @property
     def mesh(self) -> Mesh:
         """Where the steps begin and end."""
-        return Mesh(self.steps, self.breaks, self.profile.steps_of_a_piece)
+        return mesh_of(self.profile, self.steps, self.breaks)
 
     def rollout(
         self,
@@ -179,7 +179,7 @@ def symbolic_rollout(
         raise ValueError(
             f"got {len(coefficients)} coefficients for a profile of {profile.size}; give one each"
         )
-    mesh = Mesh(steps, breaks, profile.steps_of_a_piece)
+    mesh = mesh_of(profile, steps, breaks)
     times, length = mesh.columns(candidates)
     fraction = ca.horzcat(*times)
     joint = profile.motion(coefficients, fraction, *move)

@@ -51,6 +51,11 @@ class RowFunction:
             parts = list(map(self._evaluate, blocks, sizes, repeat(unpack)))
         return [np.concatenate(part) for part in zip(*parts)]
 
+    @property
+    def built(self) -> list[int]:
+        """Sizes of the blocks that are built."""
+        return sorted(self._compiled)
+
     def prepare(self, rows: int) -> int:
         """The size of block for so many rows, built; single ones use another for a while."""
         size = next((size for size in self._sizes if size >= rows), self._sizes[-1])

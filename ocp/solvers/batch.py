@@ -6,8 +6,8 @@ expressions; here they are compiled for blocks of rows and called.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from typing import Any, Self
 
@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from quietarm.models.compiled import RECENT, Compiled
 from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.cost import COST
+from quietarm.ocp.limits import ask_for_jerk
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.evaluator import Values
 from quietarm.ocp.simulation.rollout import Simulation, places_of
 from quietarm.ocp.simulation.rows import RowFunction, copy_rows
-from quietarm.ocp.solvers.derivatives import compile_derivatives
+from quietarm.ocp.solvers.derivatives import compile_arrivals, compile_derivatives
 from quietarm.ocp.solvers.node import path_of
 
 Array = NDArray[np.float64]
@@ -42,6 +43,10 @@ class MotionMultipliers:
     def by_row(self) -> Self:
         """The rows of candidates, one after another, from arrays by candidate and scenario."""
         return type(self)(**{name: np.concatenate(part) for name, part in vars(self).items()})
+
+    def of_first(self) -> Self:
+        """Those of the first scenario, of arrays by candidate and scenario."""
+        return type(self)(**{name: part[:, 0] for name, part in vars(self).items()})
 
 
 @dataclass(frozen=True)
@@ -67,13 +72,29 @@ class Derivatives(Values):
         )
 
 
+@dataclass(frozen=True)
+class _Arrivals:
+    """States on arrival, their derivatives by the coefficients, and the Hessian of a weighted sum.
+
+    Shapes (rows, 2 * modes), (rows, 2 * modes, coefficients) and (rows, coefficients,
+    coefficients).
+    """
+
+    arrival: Array
+    arrival_jacobian: Array
+    hessian: Array
+
+
 class Batch:
     """A plant's motion along a profile in a number of steps, for many candidates at once."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
         build = partial(compile_derivatives, simulation)
-        self._derivatives = RowFunction(build, sizes=(1, 4, 8))
+        # equations of many terms take as long a row in larger blocks, and longer to build
+        sizes = (1, 4, 8) if simulation.plant.steps_at_once == 1 else (1, 4)
+        self._derivatives = RowFunction(build, sizes)
+        self._arrivals = RowFunction(partial(compile_arrivals, simulation), sizes)
 
     @cached_property
     def _steps(self) -> int:
@@ -113,14 +134,22 @@ class Batch:
     @cached_property
     def _speeds(self) -> Array | None:
         """The path's speed at the nodes by each coefficient; None if it is not linear in them."""
+        # the path of derivatives that are built: another takes as long as a part of them
+        built = self._derivatives.built
+        if self.simulation.errors and not built:
+            return self._of_assumed_plant._speeds
         size = self.simulation.profile.size
         mesh = self.simulation.mesh
-        path = path_of(self.simulation.profile, mesh, False, 1)
+        rows = built[0] if built else 1
+        path = path_of(
+            self.simulation.profile, mesh, ask_for_jerk(self.simulation.quantities), rows
+        )
         if not path.linear:
             return None
         table = path.jacobian([0.0] * size, [])
         weights = np.sqrt(np.tile(mesh.lengths, NODES))
-        speeds = [table.get((1, n), ca.DM.zeros(1, len(weights))).full()[0] for n in range(size)]
+        zero = ca.DM.zeros(1, len(weights))
+        speeds = [table.get((1, n), zero).full()[0] for n in range(size)]
         return (weights * np.array(speeds)).T
 
     @on_one_thread
@@ -160,19 +189,106 @@ class Batch:
         unpack = self._unpack_first if multipliers is None else self._unpack
         return Derivatives(*self._derivatives(inputs, unpack))
 
-    def prepare(self, rows: int) -> None:
-        """Build the derivatives for so many rows first, for single ones are evaluated before."""
-        self._derivatives.prepare(rows)
+    @on_one_thread
+    def _arrivals_of(
+        self, coefficients: Array, move: Array, errors: Array, multipliers: Array | None = None
+    ) -> _Arrivals:
+        """The states on arrival alone, of rows as of `derivatives`: a fraction of the work.
+
+        Multipliers are those of the states, (rows, 2 * modes).
+        """
+        rows = len(coefficients)
+        size = self.simulation.profile.size
+        COST.gradients += rows
+        COST.hessians += rows if multipliers is not None else 0
+        if multipliers is None:
+            multipliers = np.zeros((rows, 2 * self.simulation.plant.modes))
+
+        def unpack(outputs: list[Array], rows: int) -> tuple[Array, ...]:
+            arrival, jacobian = copy_rows(outputs[:2], rows)
+            hessian = self._hessian(outputs[2:], rows)
+            return arrival, jacobian.reshape(rows, -1, size), hessian
+
+        inputs = [coefficients, move, errors, multipliers]
+        return _Arrivals(*self._arrivals(inputs, unpack))
+
+    def in_scenarios(
+        self,
+        coefficients: Array,
+        move: Array,
+        errors: Array,
+        width: Array | None = None,
+        multipliers: MotionMultipliers | None = None,
+    ) -> Derivatives:
+        """Candidates in scenarios, the first without errors; arrays by candidate and scenario.
+
+        Errors are (candidates, scenarios, errors), and multipliers by scenario. Energy and limited
+        values are those of the first scenario alone, unless others count.
+        """
+        scenarios = errors.shape[1]
+        if not self._splits(scenarios):
+            return self.derivatives(
+                np.repeat(coefficients, scenarios, axis=0),
+                np.repeat(move, scenarios, axis=0),
+                np.concatenate(errors),
+                None if width is None else np.repeat(width, scenarios),
+                None if multipliers is None else multipliers.by_row(),
+            ).by_scenario(scenarios)
+        others = scenarios - 1
+        assumed = self._of_assumed_plant.derivatives(
+            coefficients,
+            move,
+            np.zeros((len(move), 0)),
+            width,
+            None if multipliers is None else multipliers.of_first(),
+        ).by_scenario(1)
+        perturbed = self._arrivals_of(
+            np.repeat(coefficients, others, axis=0),
+            np.repeat(move, others, axis=0),
+            np.concatenate(errors[:, 1:]),
+            None if multipliers is None else np.concatenate(multipliers.arrival[:, 1:]),
+        )
+        both = {
+            name: np.concatenate(
+                [getattr(assumed, name), part.reshape(len(move), others, *part.shape[1:])], axis=1
+            )
+            for name, part in vars(perturbed).items()
+        }
+        return replace(assumed, **both)
+
+    def prepare(self, candidates: int, scenarios: int = 1) -> None:
+        """Build the derivatives for so many first, for single ones are evaluated before."""
+        if self._splits(scenarios):
+            self._of_assumed_plant.prepare(candidates)
+            self._arrivals.prepare(candidates * (scenarios - 1))
+        else:
+            self._derivatives.prepare(candidates * scenarios)
+
+    def _splits(self, scenarios: int) -> bool:
+        """Whether of the scenarios but the first the arrivals alone count."""
+        return scenarios > 1 and not any(
+            quantity.in_scenarios for quantity in self.simulation.quantities
+        )
+
+    @cached_property
+    def _of_assumed_plant(self) -> Batch:
+        """The batch of rows without errors."""
+        return batch_of(self.simulation._replace(errors=()))
+
+    def _hessian(self, outputs: Sequence[Array], rows: int) -> Array:
+        """The Hessian from its two factors, and what a path adds that is not linear."""
+        size = self.simulation.profile.size
+        hessian = np.zeros((rows, size, size))
+        if outputs[0].size:
+            sensitivities = self._by_coefficient(outputs[0], rows)
+            hessian = sensitivities @ self._by_coefficient(outputs[1], rows).swapaxes(1, 2)
+        if outputs[2].size:
+            hessian += outputs[2][:, :rows].T.reshape(rows, size, size)
+        return hessian
 
     def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """What `Derivatives` holds; a column of the outputs is a candidate."""
-        size = self.simulation.profile.size
-        sensitivities = self._by_coefficient(outputs[6], rows)
-        curved = self._by_coefficient(outputs[7], rows)
-        hessian = sensitivities @ curved.swapaxes(1, 2)
-        if outputs[8].size:
-            hessian += outputs[8][:, :rows].T.reshape(rows, size, size)
-        return (*self._unpack_first(outputs, rows)[:-1], hessian)
+        return (*self._unpack_first(outputs, rows)[:-1], self._hessian(outputs[6:], rows))
 
     def _unpack_first(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
         """The same without second derivatives: they are those of no sum."""

@@ -142,10 +142,19 @@ def compile_derivatives(simulation: Simulation, rows: int) -> ca.Function:
     return _Differentiated(simulation, rows).compile()
 
 
+def compile_arrivals(simulation: Simulation, rows: int) -> ca.Function:
+    """The states on arrival alone of so many candidates, with their derivatives.
+
+    (coefficients, rows of tasks, errors, multipliers of the arrival) -> arrival, its derivatives by
+    the coefficients, and of the weighted sum what `compile_derivatives` gives of the Lagrangian.
+    """
+    return _Differentiated(simulation, rows, only_arrivals=True).compile_arrivals()
+
+
 class _Differentiated:
     """The expressions of `compile_derivatives`, from the motion to the Hessian."""
 
-    def __init__(self, simulation: Simulation, rows: int) -> None:
+    def __init__(self, simulation: Simulation, rows: int, only_arrivals: bool = False) -> None:
         plant = simulation.plant
         profile = simulation.profile
         names = simulation.errors
@@ -159,10 +168,10 @@ class _Differentiated:
         self.path = path_of(
             profile,
             mesh,
-            ask_for_jerk(simulation.quantities),
+            ask_for_jerk(simulation.quantities) and not only_arrivals,
             rows,
         )
-        self.node = Node(simulation, self.path, (rows, nodes))
+        self.node = Node(simulation, self.path, (rows, nodes), only_arrivals)
         limited = (self.node.count - self.node.of_energy) * nodes
         counts = [self.size, 3 + 2 * plant.modes, len(names), 1, 1, 2 * plant.modes, limited]
         self.inputs = [ca.MX.sym("x", rows, count) for count in counts]
@@ -256,10 +265,12 @@ class _Differentiated:
         state = ca.MX.sym("z", rows * 2 * m, steps)
         forcing = ca.MX.sym("f", rows, NODES * m * steps)
         z = ca.vertsplit(state, rows)
-        of_modes = self.point_multipliers(of_outputs)[self.path.count :]
         driven = self.step.driven_by(ca.horzsplit(forcing, steps))
-        modes = _modes_at_nodes(driven, z[:m], z[m:])
-        here = sum(ca.dot(w, x) for w, x in zip(of_modes, modes))
+        here = ca.MX(0)
+        if of_outputs:
+            of_modes = self.point_multipliers(of_outputs)[self.path.count :]
+            modes = _modes_at_nodes(driven, z[:m], z[m:])
+            here = sum(ca.dot(w, x) for w, x in zip(of_modes, modes))
         of_state = ca.vertsplit(ca.gradient(here, state), rows)
         transposed = [list(row) for row in zip(*self.columns)]
         W, dW, _ = march(
@@ -299,6 +310,8 @@ class _Differentiated:
                 terms = zip(map(self.repeat, weights), power_a)
                 bends.append((self.of_energy[:, :steps] * bend, sum(w * x for w, x in terms)))
         pairs += [(x, self.repeat(bend) * x) for bend, x in bends]
+        if not pairs:  # what forces the modes is linear
+            return [], []
         factors, turned = zip(*pairs)
         return list(factors), list(turned)
 
@@ -307,9 +320,10 @@ class _Differentiated:
         if self.path.linear:
             return []
         count = self.path.count
-        by_outputs = self.point_multipliers(of_outputs)[:count]
-        by_forcing = product(transpose(self.f_y), of_forcing, count)
-        of_y = [x + y for x, y in zip(by_outputs, by_forcing)]
+        of_y = product(transpose(self.f_y), of_forcing, count)
+        if of_outputs:
+            by_outputs = self.point_multipliers(of_outputs)[:count]
+            of_y = [x + y for x, y in zip(by_outputs, of_y)]
         y_aa = self.path.hessian(self.a, self.move, of_y)
         zero = ca.MX.zeros(self.shape[0], 1)
         places = [(i, k) for i in range(self.size) for k in range(self.size)]
@@ -317,7 +331,7 @@ class _Differentiated:
 
     def compile(self) -> ca.Function:
         """All of it as a function."""
-        rows, steps = self.shape
+        _, steps = self.shape
         of_energy = self.node.of_energy
         powers = self.outputs[: self.node.powers]
         smooth = self.outputs[self.node.powers : of_energy]
@@ -344,10 +358,29 @@ class _Differentiated:
             *self.hessian_factors(energies, of_outputs, of_forcing),
             self.path_hessian(of_outputs, of_forcing),
         ]
+        return self.function("derivatives", self.inputs, blocks)
+
+    def compile_arrivals(self) -> ca.Function:
+        """What there is without outputs as a function."""
+        of_forcing = self.forcing_multipliers([])
+        blocks = [
+            [self.arrival],
+            [self.arrival_a],
+            *self.hessian_factors([], [], of_forcing),
+            self.path_hessian([], of_forcing),
+        ]
+        inputs = [*self.inputs[:3], self.inputs[5]]
+        return self.function("arrivals", inputs, blocks)
+
+    def function(
+        self, name: str, inputs: Sequence[ca.MX], blocks: Sequence[Sequence[Any]]
+    ) -> ca.Function:
+        """Blocks of columns as a function."""
+        rows, steps = self.shape
         outputs = [join(x, rows) for x in blocks]
         # Common terms are looked for where there are more rows than these.
         options = {"cse": rows > 4 and steps <= MOST_STEPS_OF_CSE}
-        return ca.Function("derivatives", self.inputs, outputs, options)
+        return ca.Function(name, [*inputs], outputs, options)
 
 
 def _swap(entry: ca.MX, groups: int) -> ca.MX:

@@ -13,6 +13,8 @@ from functools import lru_cache
 from typing import Any
 
 import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 
 from quietarm.models import JointMotion
 from quietarm.models.joint_motion import is_zero
@@ -23,6 +25,7 @@ from quietarm.ocp.simulation.objective import smooth_power
 from quietarm.ocp.simulation.rollout import Simulation
 from quietarm.ocp.uncertainty import perturb_plant
 
+Array = NDArray[np.float64]
 Shape = tuple[int, int]
 Table = dict[tuple[int, int], ca.MX]
 
@@ -34,6 +37,8 @@ def symbols(count: int, shape: Shape) -> list[ca.MX]:
 
 def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     """First derivatives of a column of expressions, entry by entry."""
+    if not column:
+        return {}
     unit = ca.MX.ones(*column[0].shape)
     zero = ca.MX(*column[0].shape)
     places = range(len(by))
@@ -78,6 +83,8 @@ def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
     for (i, k), entry in table.items():
         term = entry * column[k]
         sums[i] = sums[i] + term if i in sums else term
+    if not rows:
+        return []
     zero = ca.MX.zeros(*column[0].shape)
     return [sums.get(i, zero) for i in range(rows)]
 
@@ -172,8 +179,50 @@ class Path:
         return joint._replace(jerk=jerk / move[2])
 
 
-path_of = lru_cache(maxsize=8)(Path)
-"""A path that is kept for the next who asks for it."""
+class TabulatedPath(Path):
+    """A path that is linear in the coefficients, whose values by each are numbers."""
+
+    linear = True
+
+    def __init__(
+        self, profile: JointProfile, mesh: Mesh, jerk: bool, rows: int, table: Array
+    ) -> None:
+        """The table is that of the profile at the nodes, which are those of the jerk as well."""
+        self._profile = profile
+        self._jerk = jerk
+        self._rows = rows
+        self._count = 3
+        orders = [0, 1, 2, *([0, 1, 2, 1, 2, 3] if jerk else [])]
+        self.count = len(orders)
+        self._tables = [table[:, order] for order in orders]
+
+    def value(self, a: Sequence[ca.MX], move: Sequence[ca.MX]) -> list[ca.MX]:
+        """The values y at the nodes: a product of all coefficients, alike in all columns."""
+        del move
+        row = ca.horzcat(*(of_one[:, 0] for of_one in a))
+        return [
+            ca.repmat(ca.DM(table[:1]), self._rows, 1)
+            + ca.mtimes(row, ca.sparsify(ca.DM(table[1:])))
+            for table in self._tables
+        ]
+
+    def jacobian(self, a: Sequence[Any], move: Sequence[Any]) -> dict[tuple[int, int], Any]:
+        """Derivatives of y by the coefficients, numbers."""
+        del move
+        return {
+            (k, n): ca.repmat(ca.DM(table[1 + n][None]), self._rows, 1)
+            for k, table in enumerate(self._tables)
+            for n in range(len(a))
+        }
+
+
+@lru_cache(maxsize=8)
+def path_of(profile: JointProfile, mesh: Mesh, jerk: bool, rows: int) -> Path:
+    """A path, kept for the next who asks for it."""
+    table = profile.table(mesh.nodes.ravel()) if mesh.breaks or not jerk else None
+    if table is None:
+        return Path(profile, mesh, jerk, rows)
+    return TabulatedPath(profile, mesh, jerk, rows, table)
 
 
 class Node:
@@ -181,6 +230,7 @@ class Node:
 
     The outputs are the joints' `powers`, the energy's smooth part where it has one, and the values
     of the limited quantities: `count` in all, of which the first `of_energy` belong to the energy.
+    Where only arrivals are asked for there are none.
     """
 
     def __init__(
@@ -188,6 +238,7 @@ class Node:
         simulation: Simulation,
         path: Path,
         shape: Shape,
+        only_arrivals: bool = False,
     ) -> None:
         m = simulation.plant.modes
         zero = ca.MX.zeros(*shape)
@@ -203,12 +254,14 @@ class Node:
         perturbed = perturb_plant(simulation.plant, dict(zip(simulation.errors, errors)))
         f = [zero + x for x in perturbed.modal_accelerations(joint, W, dW)]
         sample = sample_plant(perturbed, joint, W, dW, ddW)
-        smooth = smooth_power(simulation.energy, sample)
-        of_energy = [*sample.powers, *([] if is_zero(smooth) else [smooth])]
-        limited = [x for quantity in simulation.quantities for x in quantity.values(sample)]
+        powers = [] if only_arrivals else [*sample.powers]
+        smooth = 0.0 if only_arrivals else smooth_power(simulation.energy, sample)
+        of_energy = [*powers, *([] if is_zero(smooth) else [smooth])]
+        quantities = () if only_arrivals else simulation.quantities
+        limited = [x for quantity in quantities for x in quantity.values(sample)]
         o = [zero + x for x in (*of_energy, *limited)]
         inputs = [*v, *move, *errors]
-        self.powers = len(sample.powers)
+        self.powers = len(powers)
         self.of_energy = len(of_energy)
         self.count = len(o)
         outputs = {(i, 0): x for i, x in enumerate(o)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import Any, Generic, Self, TypeVar
 
 import daqp
@@ -232,15 +231,14 @@ def first_steps(task: PointToPoint, profile: JointProfile) -> int:
 def evaluate(programs: Sequence[Program], coefficients: Array) -> list[Derivatives]:
     """A candidate of each of several programs of one batch, in all its scenarios.
 
-    Coefficients have shape (programs, profile.size).
+    Coefficients have shape (programs, profile.size); all have as many scenarios.
     """
-    counts = [len(program.errors) for program in programs]
-    derivatives = programs[0].batch.derivatives(
-        np.repeat(coefficients, counts, axis=0),
-        np.repeat([program.task.row for program in programs], counts, axis=0),
-        np.concatenate([program.errors for program in programs]),
+    derivatives = programs[0].batch.in_scenarios(
+        coefficients,
+        np.array([program.task.row for program in programs]),
+        np.array([program.errors for program in programs]),
     )
-    return [derivatives.take(slice(*ends)) for ends in pairwise(np.cumsum([0, *counts]))]
+    return [derivatives.take(i) for i in range(len(programs))]
 
 
 def programs_of(tasks: Sequence[PointToPoint], profile: JointProfile, steps: int) -> list[Program]:

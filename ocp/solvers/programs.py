@@ -297,16 +297,15 @@ class Programs:
         self, rows: Index, x: Array, multipliers: Multipliers | None, width: Array
     ) -> Derivatives:
         """Motions in all scenarios with derivatives by the unknowns; of arrivals what is missed."""
-        scenarios = self._scenarios
         coefficients = x[:, : self._size] @ self._axes.T
         of_motions = None if multipliers is None else self._pull_back(rows, multipliers)
-        derivatives = self._batch.derivatives(
-            np.repeat(coefficients, scenarios, axis=0),
-            np.repeat(self._move[rows], scenarios, axis=0),
-            np.concatenate(self._errors[rows]),
-            np.repeat(width * self._energy[rows] / self._move[rows, 2], scenarios),
+        derivatives = self._batch.in_scenarios(
+            coefficients,
+            self._move[rows],
+            self._errors[rows],
+            width * self._energy[rows] / self._move[rows, 2],
             of_motions,
-        ).by_scenario(scenarios)
+        )
         along = self._along
         return Derivatives(
             energy=derivatives.energy,
@@ -319,7 +318,7 @@ class Programs:
         )
 
     def _pull_back(self, rows: Index, multipliers: Multipliers) -> MotionMultipliers:
-        """Multipliers of every motion's energy, arrival and limited values."""
+        """Multipliers of every motion's energy, arrival and limited values, by scenario."""
         count = len(rows)
         scenarios = self._scenarios
         onto = MotionMultipliers(
@@ -332,4 +331,4 @@ class Programs:
             onto.arrival[:, 0] += multipliers.equality / self._arrival[rows]
         for name, of_constraint in self.split(multipliers.bounded).items():
             self.constraints[name].pull_back(rows, of_constraint, onto)
-        return onto.by_row()
+        return onto

@@ -56,8 +56,7 @@ class Sqp(Solver):
         )
         for places in _group_by_form(problems):
             alike = [problems[i] for i in places]
-            batch = alike[0].batch
-            batch.prepare(len(alike) * len(alike[0].errors))
+            alike[0].batch.prepare(len(alike), len(alike[0].errors))
             programs = Programs(alike)
             x = programs.start(np.array([starts[i] for i in places]))
             ended = minimise(

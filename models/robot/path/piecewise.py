@@ -192,6 +192,39 @@ class Place:
                 values[number] = self._shaped(row)
         return values.reshape(table.shape[2:])
 
+    def takes_by_row(self, factor: Expression) -> bool:
+        """Whether a factor is an array like the place, of several columns."""
+        of_factor = getattr(factor, "shape", ())
+        return not self._in_numbers and of_factor == self._shape and self._shape[1] > 1
+
+    def values_of_sum(self, tables: Sequence[Array], factors: Sequence[Expression]) -> Array:
+        """Of a table and others times factors, the same in all columns of a row.
+
+        Tables are summed before the product with the basis: once a row, not at every place. There
+        is a factor for every table but the first.
+        """
+        count = int(np.prod(tables[0].shape[2:]))
+        flat = np.array([table.reshape(-1, count).T for table in tables])
+        used = np.flatnonzero(flat.any(axis=(0, 2)))
+        values = np.zeros(count, dtype=object)
+        values[:] = 0.0
+        if not len(used):
+            return values.reshape(tables[0].shape[2:])
+        filled = flat[:, used]
+        pattern = ca.sparsify(ca.DM(filled.any(axis=0).astype(float))).sparsity()
+        places = np.array(pattern.row()), np.array(pattern.get_col())
+        entries = ca.DM(filled[:, places[0], places[1]].T)
+        rows, columns = self._shape
+        by_row = list[Expression]()
+        for row in range(rows):
+            weights = ca.vertcat(1.0, *(factor[row, 0] for factor in factors))
+            summed = ca.MX(pattern, ca.mtimes(entries, weights))
+            by_row.append(ca.mtimes(summed, self._basis[:, row::rows]))
+        order = np.arange(rows * columns).reshape(rows, columns).T.ravel().tolist()
+        for number, value in zip(used, ca.vertsplit(ca.horzcat(*by_row)[:, order])):
+            values[number] = self._shaped(value)
+        return values.reshape(tables[0].shape[2:])
+
     def _shaped(self, row: Expression) -> Expression:
         if self._in_numbers:
             numbers = row.full().reshape(self._shape)

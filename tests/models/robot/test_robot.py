@@ -13,6 +13,7 @@ from small_robots import ARM, ARM_FILE, write_robot
 import quietarm as qa
 from quietarm.models import Base, Spring
 from quietarm.models.robot.on_path.path_tables import modes_on, swings_of
+from quietarm.ocp.simulation.evaluator import Evaluator
 
 FILE = """
 urdf: {urdf}
@@ -321,6 +322,24 @@ def test_a_text_never_names_a_file(tmp_path):
         qa.Robot(urdf=str(file), elastic_joints=GEARS)
     with pytest.raises(TypeError, match=r"urdf is 3; give the text of a URDF, or a file as a Path"):
         qa.Robot(urdf=3)
+
+
+def test_rows_of_other_stiffness_move_as_the_robots_that_have_it():
+    """Two candidates with errors of the springs, in one call and each on a plant of its own."""
+    hand = '<link name="hand"/><joint name="wrist" type="fixed"><parent link="lower"/>'
+    urdf = URDF.replace(
+        "</robot>", f'{hand}<child link="hand"/><origin xyz="0.4 0 0"/></joint></robot>'
+    )
+    robot = qa.Robot(urdf=urdf, elastic_joints={"elbow": 1000.0}, modes=1)
+    plant = robot.along(qa.GeometricPath.line([0.0, 0.2], [0.8, 1.0]))
+    task, profile = qa.PointToPoint(plant, 1.0, 0.6), qa.CycloidPolynomial(2)
+    coefficients = [[0.1, -0.05], [0.0, 0.02]]
+    both = Evaluator(task, profile, 16, error_names=["stiffness"])(coefficients, [[0.1], [-0.2]])
+    for place, multiple in enumerate((1.1, 0.8)):
+        other = dataclasses.replace(task, plant=dataclasses.replace(plant, stiffness=multiple))
+        expected = Evaluator(other, profile, 16)(coefficients)
+        assert both.arrival[:, place] == pytest.approx(expected.arrival[:, 0], rel=1e-9, abs=1e-12)
+        assert both.energy[:, place] == pytest.approx(expected.energy[:, 0], rel=1e-9)
 
 
 def test_a_joint_whose_name_begins_as_the_beams_is_drawn_as_a_joint(tmp_path):

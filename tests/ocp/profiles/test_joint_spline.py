@@ -27,6 +27,15 @@ def test_it_is_scipys_spline():
         assert path(times, order) == pytest.approx(values, rel=1e-9, abs=1e-9)
 
 
+def test_its_table_has_what_every_coefficient_adds():
+    a = np.random.default_rng(1).uniform(-0.3, 0.3, PROFILE.size)
+    fractions = np.linspace(0.0, 1.0, 101)[1:-1]
+    path = PROFILE.path(a, 0.0, 1.0, 1.0)
+    plain, *by_each = PROFILE.table(fractions)
+    for order, values in enumerate(plain + np.tensordot(a, by_each, axes=1)):
+        assert values == pytest.approx(path(fractions, order), rel=1e-9, abs=1e-9)
+
+
 def test_both_ends_are_at_rest_without_acceleration():
     path = PROFILE.path(np.full(PROFILE.size, 0.1), 0.0, 1.0, 2.0)
     for order, ends in ((0, [0.0, 1.0]), (1, [0.0, 0.0]), (2, [0.0, 0.0])):

@@ -11,7 +11,7 @@ from sound_plant import Sound
 
 import quietarm as qa
 from quietarm.ocp import FreeVibration, perturb_plant
-from quietarm.ocp.simulation.free_vibration import fastest_along
+from quietarm.ocp.simulation.free_vibration import fastest_along, outermost
 
 
 def _decay(W, dW, omega, zeta, t):
@@ -151,3 +151,17 @@ def test_after_arrival_the_joint_neither_moves_nor_accelerates():
     assert vibration.modes == [(pytest.approx(10.0), pytest.approx(0.0, abs=1e-12))]
     with pytest.raises(ValueError, match="read-only"):
         vibration.rows[0] = 0.0
+
+
+def test_only_outermost_directions_are_kept():
+    """Rows of which none has the largest product with any vector, in one table of two, are not."""
+    random = np.random.default_rng(0)
+    tables = [random.normal(size=(40, 2)) for _ in range(2)]
+    kept = outermost(tables)
+    vectors = random.normal(size=(2000, 2))
+    for table in tables:
+        most = np.abs(vectors @ table.T).max(axis=1)
+        assert np.abs(vectors @ table[kept].T).max(axis=1) == pytest.approx(most, rel=1e-12)
+    assert len(kept) < 20
+    assert outermost([np.array([[1.0], [-3.0], [2.0]])]) == [1]
+    assert outermost([np.ones((4, 3))]) == [0, 1, 2, 3]

@@ -9,7 +9,7 @@ import pytest
 from fixed_steps import rollout
 
 import quietarm as qa
-from quietarm.ocp.simulation.mesh import default_steps
+from quietarm.ocp.simulation.mesh import default_steps, mesh_of
 
 PLAIN = qa.CycloidPolynomial(0)
 
@@ -39,3 +39,10 @@ def test_steps_resolve_the_fastest_mode_on_the_way():
     fixed, exact = rollout(task, PLAIN, []).motion, qa.Candidate.of_profile(task, PLAIN, []).motion
     assert fixed.residual == pytest.approx(exact.residual, rel=1e-3)
     assert fixed.energy == pytest.approx(exact.energy, rel=1e-5)
+
+
+def test_short_pieces_of_a_spline_get_finer_with_the_move():
+    """Else a limit that is passed within one stays passed, however many steps the move takes."""
+    spline = qa.JointSpline((0.001, 0.3, 0.302))
+    shortest = [mesh_of(spline, steps, spline.knots).lengths.min() for steps in (80, 160, 320)]
+    assert shortest[0] > 1.5 * shortest[1] > 2.5 * shortest[2]

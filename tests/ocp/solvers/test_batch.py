@@ -103,3 +103,27 @@ def test_the_sharp_energys_curvature_counts_zeros_of_the_power_that_move(plants,
         for e in np.eye(a.shape[1])
     ], axis=-1)  # fmt: skip
     assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("limits", [("torque",), ("torque", "deflection")])
+def test_scenarios_are_rows_whose_arrivals_alone_count_where_no_limit_needs_more(limits):
+    """As all rows with all derivatives: two candidates in three scenarios, the first assumed."""
+    plant, profile = qa.ArmOnFlexibleLink(), qa.CycloidPolynomial(4)
+    quantities = tuple(BY_NAME[name] for name in limits)
+    made = batch_of(Simulation(plant, profile, 24, quantities, tuple(ERRORS)))
+    coefficients, moves, _ = _candidates(2, made.simulation)
+    errors = np.random.default_rng(2).uniform(-0.1, 0.1, (2, 3, len(ERRORS)))
+    errors[:, 0] = 0.0
+    weights = _weights(made, 6)
+    weights.energy[[1, 2, 4, 5]] = 0.0
+    weights.limited[[1, 2, 4, 5]] = 0.0
+    rows = (np.repeat(table, 3, axis=0) for table in (coefficients, moves))
+    expected = made.derivatives(*rows, np.concatenate(errors), np.full(6, 0.1), weights)
+    by_scenario = MotionMultipliers(
+        **{name: part.reshape(2, 3, *part.shape[1:]) for name, part in vars(weights).items()}
+    )
+    found = made.in_scenarios(coefficients, moves, errors, np.full(2, 0.1), by_scenario)
+    for name, part in vars(expected.by_scenario(3)).items():
+        value = getattr(found, name)
+        assert value == pytest.approx(part[:, : value.shape[1]], rel=1e-9, abs=1e-9), name
+    assert found.energy.shape[1] == (3 if "deflection" in limits else 1)
