@@ -51,8 +51,8 @@ from rockit.sampling_method import FunctionGrid
 
 from quietarm.models import ArmOnFlexibleLink, JointMotion
 from quietarm.ocp import CycloidPolynomial, PointToPoint, energy_floor
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.floor.program import COLD, FloorProgram, first_grid
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.collocation import NODES
 
@@ -219,7 +219,7 @@ class Row:
 
 def resimulated_energy(free: FreeMotion) -> float:
     """F2 of a free motion by CVODES [J]."""
-    return Candidate.of_free_motion(TASK, free).energy
+    return JudgedMotion.of_free_motion(TASK, free).energy
 
 
 def measure(

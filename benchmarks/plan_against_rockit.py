@@ -50,7 +50,7 @@ from rich.table import Table
 from rockit.sampling_method import FunctionGrid
 
 from quietarm.ocp import CycloidPolynomial, Plan, PointToPoint, plan_move
-from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.solvers.nlp import OPTIONS
@@ -86,7 +86,7 @@ class Move:
 
     def above(self, coefficients: np.ndarray) -> float:
         """How far the true energy of a motion is from the best, relative."""
-        return Candidate.of_profile(self.task, PROFILE, coefficients).energy / self.best - 1
+        return JudgedMotion.of_profile(self.task, PROFILE, coefficients).energy / self.best - 1
 
     def plan(self) -> Plan:
         """Plan by quietarm, as a user would, with the verification."""

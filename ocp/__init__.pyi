@@ -1,4 +1,3 @@
-from .candidate import Candidate as Candidate
 from .energy import AbsolutePower as AbsolutePower
 from .energy import CopperLoss as CopperLoss
 from .energy import Energy as Energy
@@ -31,6 +30,7 @@ from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
 from .front.weighted import weighted_front as weighted_front
+from .judged_motion import JudgedMotion as JudgedMotion
 from .limits import QUANTITIES as QUANTITIES
 from .limits import Quantity as Quantity
 from .limits import add_quantity as add_quantity

@@ -31,7 +31,7 @@ from quietarm.ocp.limits import (
 from quietarm.ocp.record import REST
 
 if TYPE_CHECKING:
-    from quietarm.ocp.candidate import Candidate
+    from quietarm.ocp.judged_motion import JudgedMotion
 
 ENERGY = "energy"
 
@@ -49,7 +49,7 @@ class Figure:
     label : Words
         What it is, where the joint turns and where it slides.
     of : callable
-        The figure of a `Candidate`, a motion that CVODES has judged; where a motion has none,
+        The figure of a `JudgedMotion`, a motion that CVODES has judged; where a motion has none,
         infinite or no number.
     symbol : str
         Its symbol, as F1.
@@ -70,7 +70,7 @@ class Figure:
     name: str
     unit: Unit
     label: Words
-    of: Callable[[Candidate], float]
+    of: Callable[[JudgedMotion], float]
     symbol: str = ""
     digits: int = 4
     shown: frozenset[str] = PLACES
@@ -81,7 +81,7 @@ class Figure:
         instance("unit", self.unit, Unit)
         instance("label", self.label, Words)
 
-    def value(self, candidate: Candidate) -> float:
+    def value(self, candidate: JudgedMotion) -> float:
         """The figure of a motion; ValueError where a function of one's own gives no number."""
         if self.name not in _added:
             return self.of(candidate)
@@ -92,7 +92,7 @@ class Figure:
         except Exception as error:  # of a function of one's own
             raise ValueError(
                 f"the figure {self.name!r} fails ({words_of_error(error)}); give a function of a "
-                "Candidate that returns a number"
+                "JudgedMotion that returns a number"
             ) from None
 
     def unit_on(self, plant: Plant) -> str:
@@ -117,7 +117,7 @@ class Figure:
 def peak_figure(quantity: Quantity) -> Figure:
     """The largest absolute value of a quantity during the move, as a figure."""
 
-    def peak(candidate: Candidate) -> float:
+    def peak(candidate: JudgedMotion) -> float:
         least, largest = candidate.range_of(QUANTITIES.get(quantity.name, quantity))
         return max(-least, largest)
 
@@ -132,14 +132,14 @@ def peak_figure(quantity: Quantity) -> Figure:
 
 
 @interruptible
-def rms(quantity: str) -> Callable[[Candidate], float]:
+def rms(quantity: str) -> Callable[[JudgedMotion], float]:
     """Return what gives a quantity's root mean square over the move, the largest of a joint.
 
     ValueError where there is no such quantity.
     """
     _refuse_unknown(quantity)
 
-    def value(candidate: Candidate) -> float:
+    def value(candidate: JudgedMotion) -> float:
         rows = candidate.values_of(QUANTITIES[quantity])
         return float(np.sqrt(rows**2 @ candidate.weights / candidate.task.duration).max())
 
@@ -147,11 +147,11 @@ def rms(quantity: str) -> Callable[[Candidate], float]:
 
 
 @interruptible
-def final(quantity: str) -> Callable[[Candidate], float]:
+def final(quantity: str) -> Callable[[JudgedMotion], float]:
     """Return what gives a quantity's largest absolute value on arrival; ValueError likewise."""
     _refuse_unknown(quantity)
 
-    def value(candidate: Candidate) -> float:
+    def value(candidate: JudgedMotion) -> float:
         return float(np.abs(candidate.values_of(QUANTITIES[quantity])[:, -1]).max())
 
     return value
@@ -162,7 +162,7 @@ def _refuse_unknown(quantity: str) -> None:
         raise ValueError(unknown("quantity", quantity, QUANTITIES))
 
 
-def _peak_power(candidate: Candidate) -> float:
+def _peak_power(candidate: JudgedMotion) -> float:
     return candidate.peak_of_rows([candidate.moving.power])
 
 
@@ -263,7 +263,7 @@ class Figures(Mapping[str, Any], Ranged):
     """
 
     def __init__(
-        self, of: Mapping[str, Any] | None = None, candidate: Candidate | None = None
+        self, of: Mapping[str, Any] | None = None, candidate: JudgedMotion | None = None
     ) -> None:
         self._values = dict(of or {})
         self.candidate = candidate

@@ -5,8 +5,8 @@ from __future__ import annotations
 from quietarm.models import Plant
 from quietarm.models.dimensions import Unit, Words
 from quietarm.models.joint_motion import MIXED
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.figures import Figure, further_figures
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES
 
 
@@ -30,7 +30,7 @@ def joint_headings(plant: Plant, *columns: tuple[Words, Unit]) -> list[str]:
     ]
 
 
-def further_words(candidate: Candidate, place: str) -> list[str]:
+def further_words(candidate: JudgedMotion, place: str) -> list[str]:
     """Figures of one's own that stand in a place, in words: "RMS torque 0.09 N m"."""
     return [
         f"{figure.label_on(candidate.task.plant)} {figure_words(candidate, figure)}"
@@ -39,7 +39,7 @@ def further_words(candidate: Candidate, place: str) -> list[str]:
     ]
 
 
-def figure_words(candidate: Candidate, figure: Figure, drawn: bool = False) -> str:
+def figure_words(candidate: JudgedMotion, figure: Figure, drawn: bool = False) -> str:
     """Return a figure in its unit; a peak of joints of both kinds is that of each kind.
 
     As it is `drawn` powers of units are raised.

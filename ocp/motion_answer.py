@@ -8,9 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import clipped, quoted
 from quietarm.ocp.figures import ENERGY, Figures, figures_in
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import FILE, RESIDUAL
 from quietarm.ocp.record import Record
 from quietarm.ocp.saved import Answer, read_content, refusals
@@ -29,7 +29,7 @@ class MotionAnswer(Answer):
     record: Record
 
     @cached_property
-    def candidate(self) -> Candidate:
+    def candidate(self) -> JudgedMotion:
         """The motion, evaluated by CVODES."""
         raise NotImplementedError
 
@@ -53,7 +53,7 @@ class MotionAnswer(Answer):
         """F1, the largest absolute tip displacement after arrival [m], by the same."""
         return self.candidate.residual
 
-    def with_candidate(self, candidate: Candidate) -> Self:
+    def with_candidate(self, candidate: JudgedMotion) -> Self:
         """The same answer, whose motion is not evaluated again: this candidate is it."""
         answer = self.with_entries()
         vars(answer)["candidate"] = candidate

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import NotNegative, takes, whole
 from quietarm.ocp.figures import ENERGY, Figures
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -43,7 +43,7 @@ Progress = Callable[[int, int], object]
 
 
 def _along_errors(
-    candidate: Candidate,
+    candidate: JudgedMotion,
     ranges: Mapping[str, float],
     errors: Array,
     report: Progress | None = None,
@@ -83,12 +83,12 @@ class Worst:
     residual: NotNegative
 
 
-def worst_of(candidate: Candidate) -> Worst | None:
+def worst_of(candidate: JudgedMotion) -> Worst | None:
     """The worst case of a motion along a profile; None where its task is certain."""
     return next(iter(peaks_between(candidate)), None)
 
 
-def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
+def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> Worst:
     """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
 
     def residuals(errors: Array) -> Array:
@@ -98,7 +98,7 @@ def worst_case(candidate: Candidate, ranges: Mapping[str, float]) -> Worst:
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
 
 
-def peaks_between(candidate: Candidate, most: int = 4, roughly: bool = False) -> list[Worst]:
+def peaks_between(candidate: JudgedMotion, most: int = 4, roughly: bool = False) -> list[Worst]:
     """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first.
 
     On a coarser grid a narrow peak may be missed. A task that is certain has none.
@@ -116,7 +116,7 @@ def peaks_between(candidate: Candidate, most: int = 4, roughly: bool = False) ->
 
 def _peaks(
     residuals: Callable[[Array], Array],
-    candidate: Candidate,
+    candidate: JudgedMotion,
     ranges: Mapping[str, float],
     along: int,
     most: int = 1,
@@ -174,7 +174,7 @@ class Sensitivity:
     residual: float
 
 
-def sensitivities(candidate: Candidate) -> tuple[Sensitivity, ...]:
+def sensitivities(candidate: JudgedMotion) -> tuple[Sensitivity, ...]:
     """By central differences of CVODES; the parameter that adds most vibration comes first."""
     task = candidate.task
     vibration = after_arrival(task)[0]
@@ -281,13 +281,13 @@ def tolerated_residual(task: PointToPoint) -> float:
     return TOLERATED * _plain(task).residual
 
 
-def _plain(task: PointToPoint) -> Candidate:
-    return Candidate.of_profile(task.certain, CycloidPolynomial(0), [])
+def _plain(task: PointToPoint) -> JudgedMotion:
+    return JudgedMotion.of_profile(task.certain, CycloidPolynomial(0), [])
 
 
-@takes(candidate=Candidate)
+@takes(candidate=JudgedMotion)
 def evaluate_robustness(
-    candidate: Candidate,
+    candidate: JudgedMotion,
     ranges: Mapping[str, float],
     *,
     samples: int = 10_000,
@@ -298,7 +298,7 @@ def evaluate_robustness(
 
     Parameters
     ----------
-    candidate : Candidate
+    candidate : JudgedMotion
         The motion along a profile, as `Plan.candidate`; of an uncertain task the nominal plant
         counts.
     ranges : mapping of str to float

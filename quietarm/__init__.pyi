@@ -21,7 +21,6 @@ from .models import SingleLinkManipulator as SingleLinkManipulator
 from .models import deg as deg
 from .models import parameter as parameter
 from .ocp import AbsolutePower as AbsolutePower
-from .ocp import Candidate as Candidate
 from .ocp import CopperLoss as CopperLoss
 from .ocp import CycloidPolynomial as CycloidPolynomial
 from .ocp import CycloidSpline as CycloidSpline
@@ -31,6 +30,7 @@ from .ocp import InfeasibleTaskError as InfeasibleTaskError
 from .ocp import Ipopt as Ipopt
 from .ocp import JointProfile as JointProfile
 from .ocp import JointSpline as JointSpline
+from .ocp import JudgedMotion as JudgedMotion
 from .ocp import Plan as Plan
 from .ocp import PointToPoint as PointToPoint
 from .ocp import QuietarmError as QuietarmError

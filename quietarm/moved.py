@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from types import ModuleType
 
-MOVED = {"figures": "quietarm.pictures"}
+MOVED = {"figures": "quietarm.pictures", "Candidate": "quietarm.JudgedMotion"}
 """Names of `qa`."""
 MOVED_WITHIN = {
     "models": {"joint_unit": "quietarm.models.dimensions.WAY.of(kind)"},
-    "ocp": {"Motion": "quietarm.ocp.Figures"},
+    "ocp": {"Motion": "quietarm.ocp.Figures", "Candidate": "quietarm.ocp.JudgedMotion"},
     "pictures": {"QUANTITIES_DRAWN": "quietarm.pictures.drawn_quantities()"},
+    "compare": {"JudgedMotion": "quietarm.compare.ComparedMotion"},
     "studies": {
         "figures": "quietarm.views.pictures",
         "identify": "quietarm.machine.identify",
@@ -52,6 +53,8 @@ ROOMS = {
     "studies.reproduce.report": "studies.reproduce.paper_report",
     "studies.bench.page": "studies.bench.bench_page",
     "studies.bench.figures": "studies.bench.bench_pictures",
+    "ocp.candidate": "ocp.judged_motion",
+    "studies.compare.judged_motions": "studies.compare.compared_motions",
     "ocp.planning.setup": "ocp.planning.request",
     "ocp.front.curve": "ocp.front.tradeoff",
     "studies.tips": "views.tips",

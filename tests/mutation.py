@@ -51,7 +51,12 @@ TESTS = {
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
     "ocp/simulation/collocation.py": [*QUICK, *SLOW, "machine/identify/test_identify.py"],
-    "ocp/simulation/objective.py": [*QUICK, "ocp/test_candidate.py", "ocp/test_energies.py", *SLOW],
+    "ocp/simulation/objective.py": [
+        *QUICK,
+        "ocp/test_judged_motion.py",
+        "ocp/test_energies.py",
+        *SLOW,
+    ],
     "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/check_profile.py": ["ocp/profiles"],
     "ocp/profiles/differentiate.py": ["ocp/profiles", *QUICK],
@@ -66,10 +71,10 @@ TESTS = {
         *SLOW,
         "ocp/solvers/test_both_solvers.py",
     ],
-    "ocp/candidate.py": [
+    "ocp/judged_motion.py": [
         *QUICK,
         "ocp/simulation/test_free_motions.py",
-        "ocp/test_candidate.py",
+        "ocp/test_judged_motion.py",
         "ocp/robustness/test_uncertain.py",
     ],
 }

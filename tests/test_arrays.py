@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-from quietarm.ocp import Candidate, Evaluator, ModalState
+from quietarm.ocp import Evaluator, JudgedMotion, ModalState
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 
 LINK = qa.SingleLinkManipulator()
@@ -53,7 +53,7 @@ DOORS = {
     "plan.sampled": lambda made, wrong: made.plan.sampled(wrong),
     "candidate.sample": lambda made, wrong: made.plan.candidate.sample(wrong),
     "candidate.perturbed": lambda made, wrong: made.plan.candidate.perturbed(wrong).energy,
-    "Candidate.of_profile": lambda _, wrong: Candidate.of_profile(TASK, TWO, wrong),
+    "JudgedMotion.of_profile": lambda _, wrong: JudgedMotion.of_profile(TASK, TWO, wrong),
     "profile.checked": lambda _, wrong: TWO.checked(wrong),
     "coefficients of a path": lambda _, wrong: TWO.path(wrong, 0, 1, 1),
     "start of a path": lambda _, wrong: TWO.path([0, 0], wrong, 1, 1),

@@ -15,7 +15,7 @@ from quietarm.models.compiled import Compiled
 # Of these classes; `Motions` is what the pictures of motions take.
 KINDS = (
     "PointToPoint", "JointProfile", "Plant", "Energy", "Solver", "Front", "Plan", "Floor",
-    "Motions", "Candidate",
+    "Motions", "JudgedMotion",
 )  # fmt: skip
 WRONG = {
     "PointToPoint": ("link", "'link'; give a task, as PointToPoint(SingleLinkManipulator(), "),
@@ -26,7 +26,10 @@ WRONG = {
     "Front": ("front.json", "'front.json'; give Front.load('front.json')"),
     "Plan": ("plan.json", "'plan.json'; give Plan.load('plan.json')"),
     "Floor": ("floor.json", "'floor.json'; give Floor.load('floor.json')"),
-    "Candidate": ("plan.json", "'plan.json'; give a motion, as plan.candidate or Candidate.of_p"),
+    "JudgedMotion": (
+        "plan.json",
+        "'plan.json'; give a motion, as plan.candidate or JudgedMotion.of_p",
+    ),
     "Motions": (["plan.json"], "'plan.json'; give a line, as Line(plan, 'plan')"),
 }
 
@@ -97,7 +100,7 @@ def test_the_doors_are_found():
         "epsilon_front-task", "weighted_front-profile", "search-start", "sweep-profile",
         "evaluate_coefficients-task", "energy_floor-task", "cross_check-front",
         "polish_front-front", "shaped_cycloid-task", "evaluate_robustness-candidate",
-        "Candidate.of_profile-profile", "PointToPoint-plant", "PointToPoint-energy",
+        "JudgedMotion.of_profile-profile", "PointToPoint-plant", "PointToPoint-energy",
         "motion_figure-motions",
     } <= names  # fmt: skip
 

@@ -25,6 +25,8 @@ def test_a_class_that_has_another_name_says_it():
         ("ocp", "Motion", "ocp.Figures"),
         ("pictures", "QUANTITIES_DRAWN", "pictures.drawn_quantities"),
         ("studies", "export", "views"),
+        ("ocp", "Candidate", "ocp.JudgedMotion"),
+        ("compare", "JudgedMotion", "compare.ComparedMotion"),
         ("studies", "identify", "machine.identify"),
     ],
 )

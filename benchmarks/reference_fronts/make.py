@@ -16,10 +16,10 @@ from polish import polished
 
 from quietarm.metaheuristics import PROBLEMS
 from quietarm.ocp import (
-    Candidate,
     Front,
     FrontPoint,
     JointProfile,
+    JudgedMotion,
     PointToPoint,
     QuietarmError,
     epsilon_front,
@@ -91,7 +91,7 @@ def _keeps_limits(front: Front, point: FrontPoint) -> bool:
     """Whether a point keeps the task's limits by CVODES, without the room that a plan has."""
     if not front.task.limits:
         return True
-    candidate = Candidate.of_profile(front.task.certain, front.profile, point.coefficients)
+    candidate = JudgedMotion.of_profile(front.task.certain, front.profile, point.coefficients)
     return not candidate.exceeded(front.task.limits, _BETTER)
 
 

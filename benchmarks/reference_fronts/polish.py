@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics import PROBLEMS
 from quietarm.metaheuristics.problems.catalogue import FRONTS
-from quietarm.ocp import Candidate, Front, FrontPoint, QuietarmError, non_dominated
+from quietarm.ocp import Front, FrontPoint, JudgedMotion, QuietarmError, non_dominated
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, Tolerances, certify
@@ -118,12 +118,12 @@ def _judged(program: Program, outcome: Certified) -> FrontPoint | None:
     """A certified motion as a point with the figures of CVODES; None where it breaks a limit."""
     task = program.task
     coefficients = program.profile.checked(outcome.solution.coefficients)
-    motion = Candidate.of_profile(task, program.profile, coefficients)
+    motion = JudgedMotion.of_profile(task, program.profile, coefficients)
     try:
         figures = motion.residual, motion.energy
     except QuietarmError:
         return None
-    nominal = Candidate.of_profile(task.certain, program.profile, coefficients)
+    nominal = JudgedMotion.of_profile(task.certain, program.profile, coefficients)
     if nominal.exceeded(task.limits, BETTER):
         return None
     return FrontPoint(coefficients, *figures)

@@ -19,7 +19,7 @@ from rival import STEPS, Rival, by_dop853
 
 from quietarm.metaheuristics import PROBLEMS, NamedProblem
 from quietarm.metaheuristics.problems.catalogue import FRONTS
-from quietarm.ocp import Candidate, Front, FrontPoint, PointToPoint, QuietarmError, non_dominated
+from quietarm.ocp import Front, FrontPoint, JudgedMotion, PointToPoint, QuietarmError, non_dominated
 
 EVERY = 5
 """One point in so many is solved again from itself, and the last."""
@@ -84,7 +84,7 @@ def certified(
 
 def _certified(name: str, task: PointToPoint, front: Front, bound: float) -> Certificate:
     motions = [
-        Candidate.of_profile(task, front.profile, point.coefficients) for point in front.points
+        JudgedMotion.of_profile(task, front.profile, point.coefficients) for point in front.points
     ]
     energies = np.array([motion.energy for motion in motions])
     residuals = np.array([motion.residual for motion in motions])
@@ -128,7 +128,7 @@ def _motion_of(rival: Rival, point: FrontPoint, start: Array) -> FrontPoint | No
         if found is None:
             return None
         coefficients = rival.profile.checked(found)
-        motion = Candidate.of_profile(task, rival.profile, coefficients)
+        motion = JudgedMotion.of_profile(task, rival.profile, coefficients)
         try:
             figures = motion.residual, motion.energy
         except QuietarmError:
@@ -171,7 +171,7 @@ def mended(front: Front, certificate: Certificate) -> Front:
     points = list[FrontPoint]()
     for place, known in enumerate(front.points):
         best = certificate.better.get(place, known)
-        motion = Candidate.of_profile(front.task, front.profile, best.coefficients)
+        motion = JudgedMotion.of_profile(front.task, front.profile, best.coefficients)
         points.append(FrontPoint(best.coefficients, motion.residual, motion.energy))
     return replace(front, points=non_dominated(points))
 

@@ -14,10 +14,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, Positive, positive, takes, whole
 from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_grid
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
@@ -152,9 +152,9 @@ class Floor(MotionAnswer):
         return sum(energy <= min(self.starts) * (1 + share) for energy in self.starts)
 
     @cached_property
-    def candidate(self) -> Candidate:
+    def candidate(self) -> JudgedMotion:
         """The motion on the nominal plant, evaluated by CVODES."""
-        return Candidate.of_free_motion(self.task.certain, self.free)
+        return JudgedMotion.of_free_motion(self.task.certain, self.free)
 
     @property
     def trajectory(self) -> Trajectory:
@@ -298,9 +298,9 @@ def _solved(solutions: Iterable[FreeSolution]) -> list[FreeSolution]:
     return [solution for solution in solutions if solution.status.solved]
 
 
-def _by_cvodes(program: FloorProgram, solution: FreeSolution) -> Candidate:
+def _by_cvodes(program: FloorProgram, solution: FreeSolution) -> JudgedMotion:
     """The motion on the nominal plant, for CVODES."""
-    return Candidate.of_free_motion(program.task.certain, solution.free)
+    return JudgedMotion.of_free_motion(program.task.certain, solution.free)
 
 
 def _refine_each(program: FloorProgram, solutions: list[FreeSolution]) -> list[FreeSolution]:
@@ -349,7 +349,7 @@ def _on_finer_grid(
 
 def _certify_least(
     program: FloorProgram, levels: list[FreeSolution]
-) -> tuple[FreeSolution, Candidate]:
+) -> tuple[FreeSolution, JudgedMotion]:
     """The last grid's motion, or that of a coarser grid where it is verified to need less."""
     least = _certify(program, levels[-1])
     for level in levels[:-1]:
@@ -362,7 +362,7 @@ def _certify_least(
 
 def _certify(
     program: FloorProgram, solution: FreeSolution, rounds: int = 4, tolerated: float = 1e-6
-) -> tuple[FreeSolution, Candidate]:
+) -> tuple[FreeSolution, JudgedMotion]:
     """Compare with CVODES; tighten limits that are exceeded between the solver's nodes.
 
     There are so many `rounds` of it; a peak may pass its limit by the share that is tolerated.

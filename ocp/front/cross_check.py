@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
 from quietarm.ocp.front.tradeoff import Progress, Tradeoff, no_report
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes
@@ -132,7 +132,7 @@ def _compare(tradeoff: Tradeoff, point: FrontPoint, same: float = 1e-6) -> Compa
 
 
 def _limits_at_nodes(
-    problem: Program, motion: Candidate, coefficients: NDArray[np.float64]
+    problem: Program, motion: JudgedMotion, coefficients: NDArray[np.float64]
 ) -> Iterator[Limit]:
     """The limits that a point's motion keeps at the nodes of the steps.
 

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import (
     IF_STATED,
     Count,
@@ -35,6 +34,7 @@ from quietarm.ocp.front.points import (
     knee_of,
     non_dominated,
 )
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import FRONT
 from quietarm.ocp.objectives import (
     RESIDUAL_AND_ENERGY,
@@ -176,9 +176,9 @@ class Front(Answer):
         }
         return {**values, **more, **named, **window}
 
-    def judged(self, point: FrontPoint) -> Candidate:
+    def judged(self, point: FrontPoint) -> JudgedMotion:
         """Return the motion of a point, for CVODES."""
-        return Candidate.of_profile(self.task, self.profile, point.coefficients)
+        return JudgedMotion.of_profile(self.task, self.profile, point.coefficients)
 
     def figure_values(self, figure: Figure) -> NDArray[np.float64]:
         """Return a figure of every point, by CVODES; NaN where a motion does not have it."""
@@ -376,7 +376,7 @@ def reference_corner(
 
     Residual [m] of the plain cycloid, 1 mm at least, twice its energy [J], and twice its peaks.
     """
-    cycloid = Candidate.of_profile(task, CycloidPolynomial(0), [])
+    cycloid = JudgedMotion.of_profile(task, CycloidPolynomial(0), [])
     quantities = peak_quantities(checked_objectives(objectives))
     peaks = [2 * cycloid.motion.peak(name) for name in quantities]
     return (max(cycloid.residual, LEAST_REFERENCE), 2 * cycloid.energy, *peaks)

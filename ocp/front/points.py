@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import IF_STATED, Count, CountFromOne, NotNegative, Share, positive
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import PointToPoint
@@ -270,7 +270,7 @@ def evaluated(
     refuse_beyond_box(profile, table, bound)
     for coefficients in rows:
         try:
-            motion = Candidate.of_profile(task, profile, coefficients)
+            motion = JudgedMotion.of_profile(task, profile, coefficients)
             point = point_of(motion, objectives)
         except SolverFailedError:
             failed += 1
@@ -282,7 +282,7 @@ def evaluated(
     return Evaluated(non_dominated(points, objectives), failed, infeasible)
 
 
-def point_of(motion: Candidate, objectives: Sequence[str]) -> FrontPoint:
+def point_of(motion: JudgedMotion, objectives: Sequence[str]) -> FrontPoint:
     """A motion, as CVODES judges it, as a point; SolverFailedError where it has no figures."""
     names = peak_quantities(objectives)
     peaks = {name: motion.motion.peak(name) for name in names} if names else {}

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated, point_of
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities, with_peaks_measured
 from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
@@ -207,7 +207,7 @@ class Tradeoff:
             checked = certified.checked
             point = FrontPoint(coefficients, checked.residual, checked.energy)
         else:
-            motion = Candidate.of_profile(self.task, profile, coefficients)
+            motion = JudgedMotion.of_profile(self.task, profile, coefficients)
             point = point_of(motion, self.objectives)
         point = replace(point, shadow_prices=solution.shadow_prices)
         return Certificate(point, solution.iterations)

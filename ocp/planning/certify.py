@@ -13,9 +13,9 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY, Figures
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity, Ranged
 from quietarm.ocp.profiles.check_profile import check_motion
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
@@ -54,7 +54,7 @@ OF_A_PLAN = Tolerances()
 56 plans tried (6e-6)."""
 
 
-Judgement = Candidate | Figures
+Judgement = JudgedMotion | Figures
 """What another integrator says of a motion: CVODES; or by finer steps energy, residual and
 `arrival`, the state of shape (1, 2 * modes)."""
 
@@ -166,7 +166,7 @@ class _Row:
 
     def note(self, judgement: Judgement) -> None:
         """Note what another integrator says of the last solution."""
-        by_cvodes = isinstance(judgement, Candidate)
+        by_cvodes = isinstance(judgement, JudgedMotion)
         self.tried.append(Certified(self.solution, judgement, self.problem, by_cvodes))
         self.tightened = tighten(self.tightened, judgement, self.limits)
 
@@ -354,9 +354,9 @@ def _evaluate_finely(
     return evaluator(coefficients)
 
 
-def by_cvodes(problem: Program, coefficients: Array) -> Candidate:
+def by_cvodes(problem: Program, coefficients: Array) -> JudgedMotion:
     """The motion of coefficients, for CVODES."""
-    return Candidate.of_profile(problem.task, problem.profile, coefficients)
+    return JudgedMotion.of_profile(problem.task, problem.profile, coefficients)
 
 
 def tighten(limits: Sequence[Limit], motion: Ranged, to_keep: Sequence[Limit]) -> tuple[Limit, ...]:

@@ -15,7 +15,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.rigid_motion import (
     RigidMotion,
     assumed_bounds,
@@ -260,9 +260,9 @@ class _Durations:
         scenarios = new_scenarios(self._task, above)
         return with_moved_scenarios(self._task, scenarios) if scenarios else None
 
-    def _motion(self, least: LeastTime) -> Candidate:
+    def _motion(self, least: LeastTime) -> JudgedMotion:
         task = replace(self._task, duration=least.duration)
-        return Candidate.of_profile(task, self._profile, least.coefficients)
+        return JudgedMotion.of_profile(task, self._profile, least.coefficients)
 
     def widen_margins(self, least: LeastTime) -> bool:
         """Whether a motion passes limits by more than their margins, which are wider then."""

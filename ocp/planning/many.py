@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Plant
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
 from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
@@ -256,7 +256,7 @@ class _MovesTable:
         self._energy[i] = judgement.energy
         self._residual[i] = judgement.residual
         self._by_cvodes[i] = certified.by_cvodes
-        if not isinstance(judgement, Candidate):
+        if not isinstance(judgement, JudgedMotion):
             self._by_finer_steps.append(i)
             return
         for name, values in self._peaks.items():

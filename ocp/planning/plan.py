@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
 from quietarm.models.dimensions import ACCELERATION, ANGLE, EFFORT, SPEED, TORQUE, WAY, Words
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.figures import ENERGY, figures_in
 from quietarm.ocp.files import write_whole
 from quietarm.ocp.joint_words import figure_words, joint_headings
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
@@ -88,8 +88,8 @@ class Plan(MotionAnswer):
         object.__setattr__(self, "coefficients", self.profile.checked(self.coefficients))
 
     @classmethod
-    @takes(candidate=Candidate)
-    def of_candidate(cls, candidate: Candidate, **entries: Any) -> Plan:
+    @takes(candidate=JudgedMotion)
+    def of_candidate(cls, candidate: JudgedMotion, **entries: Any) -> Plan:
         """The plan of a motion along a profile, which is not evaluated again; other entries."""
         if candidate.profile is None:
             raise ValueError("a free motion has no profile; give a motion along one")
@@ -102,9 +102,9 @@ class Plan(MotionAnswer):
         return plan.with_candidate(candidate)
 
     @cached_property
-    def candidate(self) -> Candidate:
+    def candidate(self) -> JudgedMotion:
         """The motion, evaluated by CVODES."""
-        return Candidate.of_profile(self.task, self.profile, self.coefficients)
+        return JudgedMotion.of_profile(self.task, self.profile, self.coefficients)
 
     @cached_property
     def peaks(self) -> tuple[Worst, ...]:
@@ -182,7 +182,7 @@ class Plan(MotionAnswer):
         return self.sampled(np.union1d(times, [arrival]))
 
     def sampled(self, times: ArrayLike) -> Trajectory:
-        """The motion at given times by CVODES; see `Candidate.sample`."""
+        """The motion at given times by CVODES; see `JudgedMotion.sample`."""
         return self.candidate.sample(times)
 
     def _repr_html_(self) -> str:
@@ -280,7 +280,7 @@ def evaluate_coefficients(
     began = time.perf_counter()
     if profile is None:
         profile = CycloidPolynomial.of_size(count_of("coefficients", coefficients))
-    candidate = Candidate.of_profile(task, profile, coefficients)
+    candidate = JudgedMotion.of_profile(task, profile, coefficients)
     plan = Plan.of_candidate(
         candidate,
         status=SolveStatus.NOT_OPTIMISED,

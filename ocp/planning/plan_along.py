@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
@@ -282,7 +282,7 @@ def _certified_plan(request: Request, solved: _Solved) -> Plan:
     """The plan of a solution, judged by CVODES."""
     began = time.perf_counter() - solved.seconds
     certified = certify_one(solved.problem, solved.best, request.solver)
-    assert isinstance(certified.checked, Candidate)  # a single motion is judged by CVODES
+    assert isinstance(certified.checked, JudgedMotion)  # a single motion is judged by CVODES
     solution = certified.solution
     return Plan.of_candidate(
         certified.checked,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.checks import not_negative
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.task import PointToPoint
@@ -38,5 +38,5 @@ def quiet_residual(task: PointToPoint) -> float:
 
     Over durations this has no zeros, unlike its residual.
     """
-    cycloid = Candidate.of_profile(task.certain, CycloidPolynomial(0), [])
+    cycloid = JudgedMotion.of_profile(task.certain, CycloidPolynomial(0), [])
     return TOLERATED * cycloid.motion.peak_deflection

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from quietarm.models import JointMotion, Plant
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.errors import SolverFailedError
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import TORQUE_SPEED, Limit, Shares, TorqueSpeedLine
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -259,7 +259,7 @@ def _of_a_cycloid(task: PointToPoint) -> float:
     def keeps(duration: float) -> bool:
         cycloid = CycloidPolynomial(0)
         try:
-            motion = Candidate.of_profile(replace(task.certain, duration=duration), cycloid, [])
+            motion = JudgedMotion.of_profile(replace(task.certain, duration=duration), cycloid, [])
             return not motion.exceeded(task.limits)
         except SolverFailedError:
             return False

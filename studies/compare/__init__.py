@@ -4,5 +4,6 @@ May import `figures`, `report` and `reading`.
 """
 
 from quietarm.loading import attach
+from quietarm.moved import MOVED_WITHIN
 
-__getattr__, __dir__, __all__ = attach(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__, MOVED_WITHIN["compare"])

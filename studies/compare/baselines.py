@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from quietarm.models import JointMotion
-from quietarm.ocp import Candidate, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
+from quietarm.ocp import JudgedMotion, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
 from quietarm.ocp.checks import install, several, takes, unknown
 from quietarm.ocp.limits import Limit, Shares
 from quietarm.ocp.profiles.free_motion import FreeMotion
@@ -43,7 +43,7 @@ def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
 
 
 @takes(task=PointToPoint)
-def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
+def baseline(name: str, task: PointToPoint) -> Plan | JudgedMotion:
     """A baseline's motion of a task; ValueError where there is none."""
     # share of the duration that a shaper has to leave for the motion that it shapes
     least_share = 0.02
@@ -53,7 +53,7 @@ def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
     if name in SHAPERS:
         return evaluate_coefficients(task, [], profile=shaped_cycloid(task, name))
     if name == TOPPRA:
-        return Candidate.of_free_motion(task, toppra_motion(task))
+        return JudgedMotion.of_free_motion(task, toppra_motion(task))
     shaper = name.removesuffix(RUCKIG).removesuffix("-")
     impulses = _impulses(task, shaper) if shaper else Impulses((1.0,), (0.0,))
     remaining = task.duration - impulses.times[-1]
@@ -63,7 +63,7 @@ def baseline(name: str, task: PointToPoint) -> Plan | Candidate:
             "s; give a longer duration"
         )
     free = shaped(ruckig_motion(replace(task, duration=remaining)), impulses)
-    return Candidate.of_free_motion(task, free)
+    return JudgedMotion.of_free_motion(task, free)
 
 
 def _impulses(task: PointToPoint, shaper: str) -> Impulses:

@@ -16,9 +16,9 @@ from quietarm.ocp.limits import COMPARISON
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.studies.compare.baselines import TOPPRA, baseline, choose_baselines
-from quietarm.studies.compare.judged_motions import (
+from quietarm.studies.compare.compared_motions import (
     SAMPLES,
-    JudgedMotion,
+    ComparedMotion,
     judge_motion,
     merged_ranges,
     refuse_other_moves,
@@ -47,7 +47,7 @@ def compare_plans(
     samples: int = SAMPLES,
     *,
     task: PointToPoint | None = None,
-) -> list[JudgedMotion]:
+) -> list[ComparedMotion]:
     """Evaluate plans of one move and baselines for it, in this order.
 
     Parameters
@@ -66,7 +66,7 @@ def compare_plans(
 
     Returns
     -------
-    list of JudgedMotion
+    list of ComparedMotion
         A baseline that is impossible for the move says why.
 
     Raises
@@ -95,12 +95,12 @@ def compare_plans(
         try:
             judged.append(judge_motion(name, baseline(name, task), ranges, task, samples))
         except (QuietarmError, ValueError) as error:
-            judged.append(JudgedMotion(name, why=str(error)))
+            judged.append(ComparedMotion(name, why=str(error)))
     return judged
 
 
 def motions_table(
-    motions: Sequence[JudgedMotion], joint: str = ROTARY, tip_unit: str = "m"
+    motions: Sequence[ComparedMotion], joint: str = ROTARY, tip_unit: str = "m"
 ) -> pd.DataFrame:
     """A row for each motion with all its figures; what is known of none is left out."""
     rows = [{"motion": motion.name, **dict(_cells(motion, joint, tip_unit))} for motion in motions]
@@ -108,7 +108,7 @@ def motions_table(
 
 
 def _cells(
-    judged: JudgedMotion, joint: str, tip_unit: str
+    judged: ComparedMotion, joint: str, tip_unit: str
 ) -> Iterator[tuple[str, float | str | None]]:
     motion = judged.motion
     yield "parameters", judged.parameters
@@ -155,7 +155,7 @@ def _shortened(heading: str, others: Iterable[str]) -> str:
     return " ".join(["accel." if begin == "acceleration" else begin, *rest])
 
 
-def remarks(motions: Sequence[JudgedMotion], unit: str = "rad") -> list[str]:
+def remarks(motions: Sequence[ComparedMotion], unit: str = "rad") -> list[str]:
     """Why a motion is missing, and which joints turn back."""
     # a joint that goes back by more [rad] is said to
     least_turn = 1e-4
@@ -174,7 +174,7 @@ def remarks(motions: Sequence[JudgedMotion], unit: str = "rad") -> list[str]:
     ]
 
 
-def plans_report(task: PointToPoint, motions: Sequence[JudgedMotion]) -> Report:
+def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Report:
     """Motions as a table, what to know of them, and a picture."""
     joint = task.plant.joint
     table = motions_table(motions, joint, task.plant.tip_unit)

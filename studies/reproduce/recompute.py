@@ -29,7 +29,7 @@ from quietarm.ocp import (
 from quietarm.ocp.planning.named_profiles import OTHERS
 from quietarm.ocp.record import versions
 from quietarm.ocp.robustness import tolerated_residual
-from quietarm.studies.compare.judged_motions import JudgedMotion, judge_motion
+from quietarm.studies.compare.compared_motions import ComparedMotion, judge_motion
 from quietarm.studies.compare.plan_comparison import compare_plans
 from quietarm.studies.reproduce.paper import (
     CONDITIONS,
@@ -153,11 +153,11 @@ class Reproduction:
         return self.answers[Piece("both solvers", case)]
 
     @cached_property
-    def systems(self) -> dict[Case, list[JudgedMotion]]:
+    def systems(self) -> dict[Case, list[ComparedMotion]]:
         """Every system on the same moves, each judged alike; none without full effort."""
         return {case: [*self._judged(case)] for case in self.effort.systems * self.effort.full}
 
-    def _judged(self, case: Case) -> Iterator[JudgedMotion]:
+    def _judged(self, case: Case) -> Iterator[ComparedMotion]:
         shapers = ("cycloid", "zv", "zvd", "ei")
         (printed,) = (row.energy for row in SIX if row.condition == case)
         moved: dict[str, Plan | Floor | str] = {
@@ -177,7 +177,7 @@ class Reproduction:
         yield from compare_plans({}, shapers, FREQUENCY_ERROR, 0, task=case.task)
         for name, motion in moved.items():
             yield (
-                JudgedMotion(name, why=motion)
+                ComparedMotion(name, why=motion)
                 if isinstance(motion, str)
                 else judge_motion(name, motion, FREQUENCY_ERROR, case.task)
             )

@@ -83,7 +83,7 @@ def test_cvodes_and_the_rollout_spend_what_scipy_finds(tasks, name, plant):
     edges = np.linspace(0.0, task.duration, 201)
     spent = sum(quad(watts, *edges[k : k + 2], epsrel=1e-9)[0] for k in range(200))
     profile = qa.CycloidPolynomial(6)
-    assert qa.Candidate.of_profile(task, profile, SIX).energy == pytest.approx(spent, rel=1e-7)
+    assert qa.JudgedMotion.of_profile(task, profile, SIX).energy == pytest.approx(spent, rel=1e-7)
     assert rollout(task, profile, SIX).motion.energy == pytest.approx(spent, rel=1e-5)
 
 
@@ -113,7 +113,7 @@ def test_copper_loss_of_a_rigid_body():
     rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
     task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=qa.CopperLoss(0.12))
     unit = (0.02 * task.span / 0.12) ** 2 / task.duration**3
-    motion = qa.Candidate.of_profile(task, qa.CycloidPolynomial(0), []).motion
+    motion = qa.JudgedMotion.of_profile(task, qa.CycloidPolynomial(0), []).motion
     assert motion.energy == pytest.approx(2 * math.pi**2 * unit, rel=1e-9)
     # The link still has to arrive at rest, which takes a little more than the parabola.
     assert 12 * unit <= qa.energy_floor(task, starts=1).energy < 2 * math.pi**2 * unit
@@ -122,7 +122,7 @@ def test_copper_loss_of_a_rigid_body():
 def test_positive_power_of_a_rigid_body_is_what_it_takes_to_start():
     rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
     task = qa.PointToPoint(rigid, math.pi / 6, 0.8, energy=PositivePower())
-    spent = qa.Candidate.of_profile(task, qa.CycloidPolynomial(0), []).energy
+    spent = qa.JudgedMotion.of_profile(task, qa.CycloidPolynomial(0), []).energy
     assert spent == pytest.approx(0.02 * (2 * (math.pi / 6) / 0.8) ** 2 / 2, rel=1e-9)
 
 

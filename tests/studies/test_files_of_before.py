@@ -125,7 +125,7 @@ def test_fronts_and_searches_load_and_are_saved_to_the_same(old, name):
     again = qa.Front.load("again.json")
     assert again == front
     for point in front.points[::5]:
-        candidate = qa.Candidate.of_profile(front.task, front.profile, point.coefficients)
+        candidate = qa.JudgedMotion.of_profile(front.task, front.profile, point.coefficients)
         assert point.energy == pytest.approx(candidate.energy, rel=SAME)
         assert point.residual == pytest.approx(candidate.residual, rel=SAME, abs=1e-8)
 

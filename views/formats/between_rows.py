@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from quietarm.models import Expression, JointMotion
 from quietarm.models.dimensions import ANGLE
-from quietarm.ocp import Candidate, Plan
+from quietarm.ocp import JudgedMotion, Plan
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.views.formats.move_tables import columns_of, times_of
@@ -97,7 +97,7 @@ def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
     remedy = "; give a higher --rate"
     path = PiecewiseMotion(_polynomial, table, derivatives == len(OF_POINTS), False, remedy)
     task = replace(plan.task, duration=float(times[-1]))
-    return Candidate(task, path).residual
+    return JudgedMotion(task, path).residual
 
 
 def _polynomial(given: Sequence[Expression], fraction: Expression, *, jerk: bool) -> JointMotion:

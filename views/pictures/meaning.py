@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from quietarm.ocp import Candidate, CycloidPolynomial, Floor, Plan
+from quietarm.ocp import CycloidPolynomial, Floor, JudgedMotion, Plan
 from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 
 
-def meaning_of(motion: Plan | Floor | Candidate) -> str:
+def meaning_of(motion: Plan | Floor | JudgedMotion) -> str:
     """Which of `MEANINGS` a motion is; another word for what is none of them, as a shaper "MZV"."""
     if isinstance(motion, Floor):
         return "floor"
@@ -14,12 +14,12 @@ def meaning_of(motion: Plan | Floor | Candidate) -> str:
         return "plain cycloid"
     if isinstance(motion.profile, ShapedCycloid):
         return motion.profile.shaper.upper()
-    if isinstance(motion, Candidate):
+    if isinstance(motion, JudgedMotion):
         return ""
     return "robust plan" if motion.task.ranges else "plan"
 
 
-def is_plain_cycloid(motion: Plan | Candidate) -> bool:
+def is_plain_cycloid(motion: Plan | JudgedMotion) -> bool:
     """Whether a motion is the plain cycloid, whose coefficients are all zero."""
     return (
         isinstance(motion, Plan)

@@ -25,7 +25,7 @@ from quietarm.views.report.captions import caption_of_judged
 from quietarm.views.tips import tip_scale
 
 if TYPE_CHECKING:
-    from quietarm.studies.compare.judged_motions import JudgedMotion
+    from quietarm.studies.compare.compared_motions import ComparedMotion
 
 
 @interruptible
@@ -78,13 +78,13 @@ def draw_robustness(
 
 @interruptible
 def draw_motions(
-    motions: Sequence[JudgedMotion], ax: Axes | None = None, tip_unit: str = "m"
+    motions: Sequence[ComparedMotion], ax: Axes | None = None, tip_unit: str = "m"
 ) -> Axes:
     """Draw the energy of motions over their residual: open nominal, filled in the worst case.
 
     Parameters
     ----------
-    motions : sequence of JudgedMotion
+    motions : sequence of ComparedMotion
         Those that there are are drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
@@ -113,13 +113,13 @@ def draw_motions(
     return ax
 
 
-def _window(motions: Sequence[JudgedMotion]) -> float | None:
+def _window(motions: Sequence[ComparedMotion]) -> float | None:
     """The residual window of motions that are judged together [s]."""
     return next((judged.window for judged in motions if judged.window is not None), None)
 
 
 @interruptible
-def motions_figure(motions: Sequence[JudgedMotion], title: str, tip_unit: str = "m") -> Figure:
+def motions_figure(motions: Sequence[ComparedMotion], title: str, tip_unit: str = "m") -> Figure:
     """Draw motions over each other: `draw_motions`, and `draw_robustness` for each error."""
     curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}
     meanings = [motion.meaning for motion in motions if motion.robustness is not None]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import Body
-from quietarm.ocp import Candidate, Floor, Plan, Trajectory
+from quietarm.ocp import Floor, JudgedMotion, Plan, Trajectory
 from quietarm.views.pictures.grammar import FAINT, INK
 from quietarm.views.pictures.motion import Line
 
@@ -143,4 +143,4 @@ def _until(motion: Plan | Floor, end: float) -> Trajectory:
     if isinstance(motion, Plan):
         return motion.sampled(np.union1d(np.linspace(0.0, end, samples), [task.duration]))
     task = replace(task, residual_window=end - task.duration)
-    return Candidate.of_free_motion(task, motion.free).trajectory
+    return JudgedMotion.of_free_motion(task, motion.free).trajectory

@@ -17,7 +17,7 @@ from quietarm.views.report.words import error_words
 from quietarm.views.tips import tip_words
 
 if TYPE_CHECKING:
-    from quietarm.studies.compare.judged_motions import JudgedMotion
+    from quietarm.studies.compare.compared_motions import ComparedMotion
 
 _MOST_SAID = 3
 """Of more motions a sentence says only between which figures they are."""
@@ -31,7 +31,7 @@ def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
     return _caption(said, max(residuals), unit)
 
 
-def caption_of_judged(motions: Sequence[JudgedMotion], tip_unit: str) -> str:
+def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
     """The same of motions that are compared; of an uncertain plant by their worst cases."""
     known = {judged.name: judged for judged in motions if judged.motion is not None}
     said = dict[str, tuple[float, str]]()

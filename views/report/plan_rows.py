@@ -20,9 +20,9 @@ from quietarm.ocp import (
     ShapedCycloid,
     Worst,
 )
-from quietarm.ocp.candidate import Candidate
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
 from quietarm.ocp.joint_words import figure_words
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
@@ -132,7 +132,7 @@ def _size(plan: Plan | None) -> int:
 def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
     """A recorded path's figures by CVODES; of an uncertain plant also at the corners."""
     free = path.motion
-    candidate = Candidate.of_free_motion(task.certain, free)
+    candidate = JudgedMotion.of_free_motion(task.certain, free)
     ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
     jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
     unit = ACCELERATION.of(task.plant.joint)
@@ -249,7 +249,7 @@ def _move_rows(task: PointToPoint, motion: Figures, residual_limit: float = 0.0)
 
 
 def _figure_rows(
-    task: PointToPoint, candidate: Candidate, remedies: Mapping[str, str]
+    task: PointToPoint, candidate: JudgedMotion, remedies: Mapping[str, str]
 ) -> list[Row]:
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
     motion = candidate.motion
@@ -273,7 +273,7 @@ def _figure_rows(
     return list(rows.values())
 
 
-def _figure(figure: Figure, candidate: Candidate, remedies: Mapping[str, str]) -> str:
+def _figure(figure: Figure, candidate: JudgedMotion, remedies: Mapping[str, str]) -> str:
     """A figure in words, with what is to be said of it."""
     if figure.quantity:
         return _peak(figure, candidate, remedies)
@@ -307,7 +307,7 @@ def _way(size: float, task: PointToPoint) -> str:
     return f"{size:.3g} {unit_of_way(task.plant)}"
 
 
-def _peak(figure: Figure, candidate: Candidate, remedies: Mapping[str, str]) -> str:
+def _peak(figure: Figure, candidate: JudgedMotion, remedies: Mapping[str, str]) -> str:
     """A peak, with a warning where the drive or the plant's equations may not follow."""
     task = candidate.task
     motion = candidate.figures

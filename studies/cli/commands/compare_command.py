@@ -16,7 +16,7 @@ from quietarm.studies.cli.outputs import REPORT_OPTION, finish
 from quietarm.studies.cli.plants import warn_of_notes
 from quietarm.studies.cli.quantities import MEASURED, once
 from quietarm.studies.cli.types import INPUT, NAMES
-from quietarm.studies.compare.judged_motions import SAMPLES
+from quietarm.studies.compare.compared_motions import SAMPLES
 from quietarm.views.report import Report
 from quietarm.views.report.terminal import print_lines
 
@@ -76,7 +76,7 @@ def compare(given: Given) -> None:
 
 def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
     """Plans and baselines; `measured` errors are those that the plans are made for."""
-    from quietarm.studies.compare.judged_motions import merged_ranges
+    from quietarm.studies.compare.compared_motions import merged_ranges
     from quietarm.studies.compare.plan_comparison import compare_plans, plans_report
 
     ranges = once(given.errors, "--error ")

@@ -8,7 +8,7 @@ from populations import PROFILE, candidates, pi
 
 from quietarm.metaheuristics.evaluation.population import search_evaluator
 from quietarm.models import SingleLinkManipulator
-from quietarm.ocp import Candidate, PointToPoint
+from quietarm.ocp import JudgedMotion, PointToPoint
 from quietarm.studies.reproduce.paper import CONDITIONS
 
 FINE = 140  # ocp.simulation.mesh.ROLLOUT_STEPS
@@ -39,7 +39,7 @@ def test_energy_and_residual_are_those_of_the_independent_integrator(task, bound
     X = candidates(8, bound, seed=4)
     values = search_evaluator(task, PROFILE)(X)
     fine = search_evaluator(task, PROFILE, FINE)(X)
-    motions = [Candidate.of_profile(task, PROFILE, x).motion for x in X]
+    motions = [JudgedMotion.of_profile(task, PROFILE, x).motion for x in X]
     assert fine.energy[:, 0] == pytest.approx([m.energy for m in motions], rel=1e-5, abs=0)
     residuals = np.array([motion.residual for motion in motions])
     # W and W'/omega 1e-6 m off at arrival (`CANDIDATE_STEPS`), on top of the 5e-5 of a peak between

@@ -25,7 +25,7 @@ def test_a_population_spends_what_cvodes_finds(tasks, name, energy):
     task, bound = tasks[name]
     task, profile = replace(task, energy=energy), qa.CycloidPolynomial(4)
     X = np.random.default_rng(3).uniform(-bound, bound, (6, 4))
-    expected = [qa.Candidate.of_profile(task, profile, x).energy for x in X]
+    expected = [qa.JudgedMotion.of_profile(task, profile, x).energy for x in X]
     fine = Evaluator(task, profile)(X).energy[:, 0]
     assert fine == pytest.approx(expected, rel=1e-5)
     assert search_evaluator(task, profile)(X).energy[:, 0] == pytest.approx(expected, rel=3e-3)
@@ -36,5 +36,5 @@ def test_a_search_states_what_cvodes_finds(tasks, energy):
     task = replace(tasks["single link"][0], energy=energy)
     front = qa.search(task, algorithm="nsga2", bound=0.2, population=20, generations=10)
     for point in (front.points[0], front.points[-1]):
-        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
+        motion = qa.JudgedMotion.of_profile(task, front.profile, point.coefficients).motion
         assert point.energy == pytest.approx(motion.energy, rel=1e-5)

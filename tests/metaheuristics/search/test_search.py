@@ -7,7 +7,7 @@ from fixed_steps import rollout
 from small_searches import BOUNDS, METHODS, TASKS, found, run
 
 from quietarm.metaheuristics import search
-from quietarm.ocp import Candidate, CycloidPolynomial
+from quietarm.ocp import CycloidPolynomial, JudgedMotion
 
 # -- what a front is --
 
@@ -20,7 +20,7 @@ def test_figures_are_those_of_the_finer_rollout_and_of_the_independent_integrato
         assert point.energy == pytest.approx(motion.energy, rel=1e-7)
         assert point.residual == pytest.approx(motion.residual, rel=1e-4)
     for point in (front.points[0], front.points[-1]):
-        motion = Candidate.of_profile(front.task, front.profile, point.coefficients).motion
+        motion = JudgedMotion.of_profile(front.task, front.profile, point.coefficients).motion
         assert point.energy == pytest.approx(motion.energy, rel=1e-5)
         assert point.residual == pytest.approx(motion.residual, rel=1e-4, abs=1e-6)
 

@@ -11,7 +11,7 @@ import pytest
 from small_searches import HALF, SIXTH, found, pi
 
 from quietarm.metaheuristics import PAPER_BOX, search
-from quietarm.ocp import Candidate, PointToPoint, epsilon_front, plan_move, polish_front
+from quietarm.ocp import JudgedMotion, PointToPoint, epsilon_front, plan_move, polish_front
 
 # -- the paper's energies --
 
@@ -32,7 +32,7 @@ def less_searched(method, task):
 def assert_reaches(front, energy):
     point = front.cheapest(PAPERS_RESIDUAL[front.record.method])
     assert point.energy <= energy
-    motion = Candidate.of_profile(front.task, front.profile, point.coefficients).motion
+    motion = JudgedMotion.of_profile(front.task, front.profile, point.coefficients).motion
     assert motion.energy <= energy * (1 + 1e-5)
     assert motion.residual <= PAPERS_RESIDUAL[front.record.method] * (1 + 1e-3)
 

@@ -10,7 +10,7 @@ import pytest
 from quietarm.metaheuristics import search
 from quietarm.metaheuristics.evaluation.stated_figures import check_figures
 from quietarm.models import ArmOnFlexibleLink
-from quietarm.ocp import Candidate, PointToPoint, Uncertainty
+from quietarm.ocp import JudgedMotion, PointToPoint, Uncertainty
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def searched(task):
 def test_residuals_are_those_of_the_worst_sample_by_cvodes(searched, task):
     for point in (searched.smallest_residual(), searched.cheapest()):
         alone = [
-            Candidate.of_profile(
+            JudgedMotion.of_profile(
                 replace(task, plant=part, uncertainty=None), searched.profile, point.coefficients
             ).motion
             for part in task.perturbed_plants

@@ -7,9 +7,9 @@ import pytest
 from moves import CASES
 
 from quietarm.ocp import (
-    Candidate,
     CycloidPolynomial,
     Ipopt,
+    JudgedMotion,
     Uncertainty,
     cross_check,
     epsilon_front,
@@ -67,7 +67,7 @@ def test_a_deflection_is_limited_in_every_scenario_by_both_solvers():
     assert both.largest < 1e-6
     for point in robust.points:
         peak, nominal = (
-            Candidate.of_profile(one, robust.profile, point.coefficients).motion.peak_deflection
+            JudgedMotion.of_profile(one, robust.profile, point.coefficients).motion.peak_deflection
             for one in (task, task.certain)
         )
         assert 0.999 * 31e-3 < peak <= 31e-3 * (1 + 2e-3)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quietarm.ocp import Candidate, CycloidPolynomial, Front, Record
+from quietarm.ocp import CycloidPolynomial, Front, JudgedMotion, Record
 
 ROWS = np.array([[0.0, 0.0], [0.003347, -0.1697], [0.02, 0.05], [-0.05, -0.2]])
 
@@ -23,7 +23,7 @@ def given(task):
 
 def by_cvodes(task, rows):
     """(residual, energy) of every row by the independent integrator."""
-    motions = [Candidate.of_profile(task, CycloidPolynomial(2), row).motion for row in rows]
+    motions = [JudgedMotion.of_profile(task, CycloidPolynomial(2), row).motion for row in rows]
     return {tuple(row): (m.residual, m.energy) for row, m in zip(rows, motions, strict=True)}
 
 
@@ -51,7 +51,7 @@ def test_a_record_has_a_bound_that_a_file_takes(bound):
 def test_motions_that_break_a_limit_or_overflow_are_left_out_and_counted(task):
     figures = by_cvodes(task, ROWS)
     torques = [
-        Candidate.of_profile(task, CycloidPolynomial(2), row).motion.peak_torque for row in ROWS
+        JudgedMotion.of_profile(task, CycloidPolynomial(2), row).motion.peak_torque for row in ROWS
     ]
     most = np.median(torques)
     limited = replace(task, torque_limit=most)

@@ -51,7 +51,7 @@ def test_points_are_even_in_both_objectives(case):
 def test_every_point_has_the_figures_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
-        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
+        motion = qa.JudgedMotion.of_profile(task, front.profile, point.coefficients).motion
         # of all points but the ends by steps that CVODES confirms to this share at every tenth
         assert point.energy == pytest.approx(motion.energy, rel=1e-6)
         assert point.residual == pytest.approx(motion.residual, rel=1e-6, abs=STILL)
@@ -64,7 +64,7 @@ def test_where_rest_is_out_of_reach_the_front_begins_at_the_least_residual():
     task, profile = CASES["arm"][0], qa.CycloidPolynomial(1)
     front = qa.epsilon_front(task, profile, points=5)
     scan = [
-        qa.Candidate.of_profile(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)
+        qa.JudgedMotion.of_profile(task, profile, [a]).residual for a in np.linspace(-0.4, 0.4, 81)
     ]
     smallest = front.smallest_residual()
     assert 0.9 * min(scan) < smallest.residual < 1.001 * min(scan)
@@ -98,7 +98,7 @@ def test_every_point_keeps_the_limits_that_no_motion_at_rest_keeps(tasks, name, 
     fine = qa.epsilon_front(task, six, bound=bound, points=2, starts=1, steps=384)
     assert not front.failures
     for point in front.points:
-        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
+        motion = qa.JudgedMotion.of_profile(task, front.profile, point.coefficients).motion
         assert not motion.exceeded(task.limits, 1e-6)
     # and is hardly less still for it
     assert front.residuals[0] == pytest.approx(fine.residuals[0], rel=2e-3)

@@ -20,7 +20,7 @@ def rough():
     """A front of random coefficients, as a search that has hardly begun."""
     random, points = np.random.default_rng(0), []
     for coefficients in random.uniform(-BOUND, BOUND, (60, PROFILE.size)):
-        motion = qa.Candidate.of_profile(TASK, PROFILE, coefficients).motion
+        motion = qa.JudgedMotion.of_profile(TASK, PROFILE, coefficients).motion
         points.append(FrontPoint(tuple(coefficients.tolist()), motion.residual, motion.energy))
     return qa.Front(
         task=TASK, profile=PROFILE, points=non_dominated(points), reference=(0.015, 0.25),

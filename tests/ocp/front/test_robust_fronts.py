@@ -35,7 +35,7 @@ def test_a_points_residual_is_the_largest_over_the_scenarios(task, name):
     assert len(front.points) > 1
     for point in front.points:
         by_scenario = [
-            qa.Candidate.of_profile(
+            qa.JudgedMotion.of_profile(
                 replace(task.certain, plant=perturb_plant(task.plant, {"frequency": error})),
                 PROFILE,
                 point.coefficients,

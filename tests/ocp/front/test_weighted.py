@@ -79,6 +79,6 @@ def test_what_is_not_certified_has_the_place_of_its_minimum(monkeypatch):
 def test_the_figures_are_those_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:
-        motion = qa.Candidate.of_profile(task, front.profile, point.coefficients).motion
+        motion = qa.JudgedMotion.of_profile(task, front.profile, point.coefficients).motion
         assert (point.residual, point.energy) == (motion.residual, motion.energy)
         assert np.abs(point.coefficients).max() <= bound

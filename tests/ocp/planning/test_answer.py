@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-import quietarm.ocp.candidate
+import quietarm.ocp.judged_motion
 from quietarm.ocp import Figures, Verification
 
 # Table 1, N = 2.
@@ -46,7 +46,7 @@ def test_a_saved_plan_loads_equal(any_plan, tmp_path):
     assert loaded == any_plan
     assert (
         loaded.motion
-        == qa.Candidate.of_profile(loaded.task, loaded.profile, loaded.coefficients).motion
+        == qa.JudgedMotion.of_profile(loaded.task, loaded.profile, loaded.coefficients).motion
     )
 
 
@@ -61,7 +61,7 @@ def test_what_planning_has_simulated_is_not_simulated_again(tasks, monkeypatch, 
     def refuse(*arguments):
         raise AssertionError("CVODES is asked again")
 
-    monkeypatch.setattr(quietarm.ocp.candidate, "integrate", refuse)
+    monkeypatch.setattr(quietarm.ocp.judged_motion, "integrate", refuse)
     for plan in (planned, evaluated, planned.restated(seconds=1.0)):
         assert (plan.motion.energy, plan.motion.residual) == (plan.energy, plan.residual)
         assert (plan.worst is None) == (not errors)

@@ -28,7 +28,7 @@ def test_moves_at_rest_are_planned_as_alone(moves):
     for task, energy, coefficients in zip(moves, found.energy, found.coefficients, strict=True):
         alone = qa.plan_move(task, bound=0.3)
         assert energy == pytest.approx(alone.energy, rel=1e-5)
-        exact = qa.Candidate.of_profile(task, found.profile, coefficients).motion
+        exact = qa.JudgedMotion.of_profile(task, found.profile, coefficients).motion
         assert energy == pytest.approx(exact.energy, rel=1e-5)
         assert exact.residual < 2e-8
         assert np.abs(coefficients).max() <= 0.3 * (1 + 1e-7)
@@ -41,7 +41,7 @@ def test_moves_with_limits_are_certified_by_cvodes(moves):
     assert found.by_cvodes.all()
     assert (found.residual <= 1e-3 * (1 + 1e-6)).all()
     for task, coefficients in zip(limited, found.coefficients, strict=True):
-        assert qa.Candidate.of_profile(
+        assert qa.JudgedMotion.of_profile(
             task, found.profile, coefficients
         ).motion.peak_speed <= 4.0 * (1 + 1e-6)
 

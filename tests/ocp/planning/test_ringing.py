@@ -38,7 +38,9 @@ def _third_opinion(task, name, a):
 @pytest.mark.slow_after(2)
 def test_a_move_that_begins_ringing_arrives_still_and_scipy_agrees(ringing, name):
     plan = qa.plan_move(ringing, SIX, starts=1)
-    still = max(1e-8, 1e-7 * qa.Candidate.of_profile(ringing, qa.CycloidPolynomial(0), []).residual)
+    still = max(
+        1e-8, 1e-7 * qa.JudgedMotion.of_profile(ringing, qa.CycloidPolynomial(0), []).residual
+    )
     assert plan.residual < still
     other = _third_opinion(ringing, name, plan.coefficients)
     assert plan.energy == pytest.approx(other.energy, rel=1e-9)
@@ -54,7 +56,7 @@ def test_searches_see_what_cvodes_does(ringing):
     found = Evaluator(ringing, SIX, steps=140)(population)
     figures = zip(population, found.sampled_residual[:, 0], found.energy[:, 0], strict=True)
     for a, residual, energy in figures:
-        exact = qa.Candidate.of_profile(ringing, SIX, a).motion
+        exact = qa.JudgedMotion.of_profile(ringing, SIX, a).motion
         assert energy == pytest.approx(exact.energy, rel=1e-5)
         assert residual == pytest.approx(exact.residual, rel=3e-4)
         fixed = rollout(ringing, SIX, a)
@@ -64,10 +66,10 @@ def test_searches_see_what_cvodes_does(ringing):
 
 def test_errors_of_the_plant_begin_in_the_same_state(ringing):
     profile, a, errors = qa.CycloidPolynomial(3), [0.05, -0.1, 0.02], {"frequency": 0.07}
-    candidate = qa.Candidate.of_profile(ringing, profile, a)
+    candidate = qa.JudgedMotion.of_profile(ringing, profile, a)
     figures = qa.evaluate_robustness(candidate, errors, samples=1).sweeps[0].figures
     wrong = replace(ringing, plant=perturb_plant(ringing.plant, errors))
-    exact = qa.Candidate.of_profile(wrong, profile, a).motion
+    exact = qa.JudgedMotion.of_profile(wrong, profile, a).motion
     assert figures.residual[-1] == pytest.approx(exact.residual, rel=1e-4)
     assert figures.energy[-1] == pytest.approx(exact.energy, rel=1e-5)
 
@@ -81,7 +83,7 @@ def test_both_solvers_fronts_and_the_floor_begin_in_the_same_state(tasks):
     front = qa.epsilon_front(task, profile, points=3, **settings)
     assert front.points[0].energy == pytest.approx(plans[0].energy, rel=1e-5)
     for point in front.points:
-        exact = qa.Candidate.of_profile(task, profile, point.coefficients).motion
+        exact = qa.JudgedMotion.of_profile(task, profile, point.coefficients).motion
         assert point.energy == pytest.approx(exact.energy, rel=1e-6)
         assert point.residual == pytest.approx(exact.residual, rel=1e-6, abs=1e-8)
     floor = qa.energy_floor(replace(task, acceleration_limit=40.0), starts=1, energy_tolerance=0.05)
@@ -105,7 +107,7 @@ def test_a_wanted_state_is_reached_and_scipy_agrees(tasks, name):
     assert plan.energy == pytest.approx(other.energy, rel=1e-9)
     # it rings on as from the wanted state: at rest the same motion would count as loud
     assert plan.residual < 1e-6
-    assert qa.Candidate.of_profile(tasks[name], SIX, plan.coefficients).residual > 2e-3
+    assert qa.JudgedMotion.of_profile(tasks[name], SIX, plan.coefficients).residual > 2e-3
 
 
 def test_the_residual_is_the_distance_from_the_wanted_free_vibration(tasks, name):
@@ -117,7 +119,9 @@ def test_the_residual_is_the_distance_from_the_wanted_free_vibration(tasks, name
     apart = other.after.sol(task.duration + times)[:n] - wanted.sol(times)[:n]
     expected = other.phi * np.abs(apart).max()
     profile = qa.CycloidPolynomial(2)
-    assert qa.Candidate.of_profile(task, profile, a).residual == pytest.approx(expected, rel=3e-6)
+    assert qa.JudgedMotion.of_profile(task, profile, a).residual == pytest.approx(
+        expected, rel=3e-6
+    )
     assert rollout(task, profile, a).motion.residual == pytest.approx(expected, rel=1e-4)
     found = Evaluator(task, profile, steps=140)([a])
     assert found.sampled_residual == pytest.approx(expected, rel=1e-4)
@@ -133,8 +137,8 @@ def test_what_rings_adds_to_what_a_move_leaves_on_a_linear_link():
     link = qa.SingleLinkManipulator(zeta=0.0, beta2=0.0)
     task, plain = qa.PointToPoint(link, 0.5, 2 * np.pi / link.omega), qa.CycloidPolynomial(0)
     state = ModalState((0.01,), (0.2,))
-    own = qa.Candidate.of_profile(task, plain, []).residual
-    kept = qa.Candidate.of_profile(replace(task, initial=state, final=state), plain, []).residual
+    own = qa.JudgedMotion.of_profile(task, plain, []).residual
+    kept = qa.JudgedMotion.of_profile(replace(task, initial=state, final=state), plain, []).residual
     assert kept == pytest.approx(own, rel=1e-8)
 
 

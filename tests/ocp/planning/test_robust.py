@@ -30,7 +30,7 @@ def residuals(plan, errors):
     """By CVODES, of the motion on plants with these errors."""
     task = plan.task.certain
     return [
-        qa.Candidate.of_profile(
+        qa.JudgedMotion.of_profile(
             replace(task, plant=perturb_plant(task.plant, {"frequency": error})),
             plan.profile,
             plan.coefficients,

@@ -53,8 +53,8 @@ def test_scipy_restarted_at_every_impulse_agrees(plant, modes, duration):
     corners = sorted({0.0, duration, *profile.impulses.times})
     corners = sorted({*corners, *(begin + cycloid for _, begin in impulses)})
     state, _ = followed(plant, joint, corners, max_step=2e-3)
-    motion = qa.Candidate.of_profile(task, profile, []).motion
-    arrival = qa.Candidate.of_profile(task, profile, []).sample([duration]).modes[0]
+    motion = qa.JudgedMotion.of_profile(task, profile, []).motion
+    arrival = qa.JudgedMotion.of_profile(task, profile, []).sample([duration]).modes[0]
     assert arrival == pytest.approx(state[:modes], abs=1e-8)
     assert motion.net_work == pytest.approx(state[-2], rel=1e-6)
     assert motion.energy == pytest.approx(state[-1], rel=1e-5)

@@ -152,7 +152,7 @@ def test_plans_do_not_depend_on_how_a_profile_is_written(tasks, tmp_path):
     plans = [qa.plan_move(tasks["arm"], kind(5), starts=1) for kind in WAVES]
     for plan in plans:
         assert plan.residual < 1e-8
-        judged = qa.Candidate.of_profile(plan.task, plan.profile, plan.coefficients)
+        judged = qa.JudgedMotion.of_profile(plan.task, plan.profile, plan.coefficients)
         assert plan.motion == judged.motion
         plan.save(tmp_path / "plan.json")
         assert qa.Plan.load(tmp_path / "plan.json") == plan
@@ -276,4 +276,4 @@ def test_a_motion_is_checked_at_its_own_coefficients(tasks):
     with pytest.raises(ValueError, match=told):
         qa.evaluate_coefficients(link, [0.6], profile=_LighterBeyond(1))
     with pytest.raises(ValueError, match=told):
-        qa.Candidate.of_profile(link, _LighterBeyond(1), [0.6])
+        qa.JudgedMotion.of_profile(link, _LighterBeyond(1), [0.6])

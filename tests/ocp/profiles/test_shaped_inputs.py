@@ -74,7 +74,7 @@ def test_the_gradient_plans_with_it(solved, name, profile, tasks, tmp_path):
     task = tasks[name]
     plan = qa.plan_move(task, profile, starts=1)
     assert plan.residual < 1e-7 * qa.evaluate_coefficients(task, []).residual + 1e-8
-    assert plan.motion == qa.Candidate.of_profile(task, profile, plan.coefficients).motion
+    assert plan.motion == qa.JudgedMotion.of_profile(task, profile, plan.coefficients).motion
     assert plan.energy < 1.001 * solved(task, 4).energy
     plan.save(tmp_path / "plan.json")
     assert qa.Plan.load(tmp_path / "plan.json") == plan

@@ -25,7 +25,7 @@ def of_plan(plan, ranges, **settings):
 def alone(plan, errors):
     """The figures of a plan on one plant with errors, by CVODES."""
     task = replace(plan.task, plant=perturb_plant(plan.task.plant, errors))
-    return qa.Candidate.of_profile(task, plan.profile, plan.coefficients).motion
+    return qa.JudgedMotion.of_profile(task, plan.profile, plan.coefficients).motion
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def ends(excess, step=1e-3):
 def test_the_insensitivity_of_shapers_is_that_of_the_closed_form(shaper, duration):
     task = qa.PointToPoint(LINEAR, 1.0, duration)
     profile = qa.shaped_cycloid(task, shaper)
-    candidate = qa.Candidate.of_profile(task, profile, [])
+    candidate = qa.JudgedMotion.of_profile(task, profile, [])
     found = qa.evaluate_robustness(candidate, {"frequency": 0.6}, samples=1)
     sweep, plain = found.sweeps[0], plain_residual(1.0, task, duration)
     assert found.cycloid == pytest.approx(plain, rel=1e-5)

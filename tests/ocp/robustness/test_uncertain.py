@@ -38,14 +38,14 @@ def test_figures_are_the_worst_of_the_parts_alone(of, request):
     task = request.getfixturevalue(of)
     profile = qa.CycloidPolynomial(len(MOVE))
     alone = [
-        qa.Candidate.of_profile(replace(task.certain, plant=plant), profile, MOVE).motion
+        qa.JudgedMotion.of_profile(replace(task.certain, plant=plant), profile, MOVE).motion
         for plant in (
             perturb_plant(task.plant, dict(zip(task.error_names, errors, strict=True)))
             for errors in task.scenarios
         )
     ]
     together, fixed = (
-        qa.Candidate.of_profile(task, profile, MOVE).motion,
+        qa.JudgedMotion.of_profile(task, profile, MOVE).motion,
         rollout(task, profile, MOVE).motion,
     )
     for found, tolerance in ((together, 1e-6), (fixed, 1e-2)):  # fixed steps: peaks at the nodes
@@ -62,7 +62,7 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     largest = Evaluator(task, evaluated.profile, 160)([MOVE], errors).residual.max()
     assert evaluated.worst.residual == pytest.approx(largest, rel=1e-3)
     there = perturb_plant(task.plant, evaluated.worst.errors)
-    again = qa.Candidate.of_profile(
+    again = qa.JudgedMotion.of_profile(
         replace(task.certain, plant=there), evaluated.profile, MOVE
     ).motion
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.

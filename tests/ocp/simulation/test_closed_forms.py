@@ -27,7 +27,7 @@ def test_braking_costs_as_much_as_driving(a, turns):
     path, grid = profile.path(a, *task.move), np.linspace(0, 0.8, 250_001)
     speed = path(grid, 1)
     kinetic = 0.02 * speed**2 / 2
-    motion = qa.Candidate.of_profile(task, profile, a).motion
+    motion = qa.JudgedMotion.of_profile(task, profile, a).motion
     assert np.abs(np.diff(np.sign(speed[1:-1]))).sum() / 2 >= turns  # back and forth on the way
     assert motion.energy == pytest.approx(np.abs(np.diff(kinetic)).sum(), rel=1e-9)
     assert motion.net_work == pytest.approx(0.0, abs=1e-10)
@@ -55,7 +55,7 @@ def test_a_power_that_is_exactly_zero_at_a_sample_parts_the_work():
     # theta' = 6 f (1 - f) span/T with f = t/T: a rigid body's power is 0 at f = 1/2, where its
     # speed is 3/2 span/T. Starting and stopping each cost alpha1 theta'^2/2.
     rigid = qa.SingleLinkManipulator(alpha1=0.02, alpha2=0.0, c=0.0)
-    motion = qa.Candidate.of_profile(
+    motion = qa.JudgedMotion.of_profile(
         qa.PointToPoint(rigid, 0.7, 1.0), _InPowers((0.0, 0.0, 3.0, -2.0)), []
     ).motion
     assert motion.energy == pytest.approx(0.02 * (1.5 * 0.7) ** 2, rel=1e-9)
@@ -70,7 +70,7 @@ def test_every_sign_change_of_a_long_ringing_move_is_found():
     )
     with pytest.warns(UserWarning, match="700 rad, more than a turn; were degrees meant"):
         task = qa.PointToPoint(plant, span, T)
-    given = qa.Candidate(task, PiecewiseMotion.of_profile(task, _InPowers((0.0, 0.0, 1.0)), []))
+    given = qa.JudgedMotion(task, PiecewiseMotion.of_profile(task, _InPowers((0.0, 0.0, 1.0)), []))
     motion = given.perturbed({"alpha1": -1.0}).motion  # no plant has alpha1 = 0
     zeros = np.arange(pi / 2, omega * T, pi) / omega
     t = np.array([0.0, *zeros, T])
@@ -88,6 +88,6 @@ def test_the_residual_of_an_undamped_arm_is_its_amplitude(omega):
     drive = 2 * pi / T
     gain = -2.555e-1 * (2 * pi * span / T**2) / (omega**2 - drive**2)
     W, dW = -gain * drive / omega * sin(omega * T), gain * drive * (1 - cos(omega * T))
-    motion = qa.Candidate.of_profile(qa.PointToPoint(plant, span, T), PLAIN, []).motion
+    motion = qa.JudgedMotion.of_profile(qa.PointToPoint(plant, span, T), PLAIN, []).motion
     # Samples miss 1.2e-6 of a peak at most.
     assert motion.residual == pytest.approx(2.28 * math.hypot(W, dW / omega), rel=2e-6)

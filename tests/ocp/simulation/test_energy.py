@@ -118,7 +118,7 @@ def test_overshoot_is_how_far_the_joint_passes_the_target(target, halfway, overs
     there, back = 25 * halfway, 25 * (target - halfway)  # a (0.2 s)^2 is the angle
     free = FreeMotion([0.0, 0.2, 0.4, 0.6, 0.8], [there, -there, back, -back], np.zeros(4))
     task = qa.PointToPoint(qa.SingleLinkManipulator(), target, 0.8)
-    motion = qa.Candidate.of_free_motion(task, free).motion
+    motion = qa.JudgedMotion.of_free_motion(task, free).motion
     assert (motion.peak_jerk, motion.peak("jerk")) == (None, math.inf)  # the acceleration jumps
     assert motion.overshoot == pytest.approx(overshoot, abs=1e-12)
     assert math.copysign(1.0, motion.overshoot) == 1.0  # else a table prints -0

@@ -32,7 +32,7 @@ def test_every_candidate_in_every_scenario_is_what_cvodes_finds(tasks, name):
     evaluation = Evaluator(task, PROFILE)(MOTIONS)
     assert evaluation.energy.shape == evaluation.residual.shape == (4, 5)
     for i, a in enumerate(MOTIONS):
-        exact = qa.Candidate.of_profile(task, PROFILE, a)
+        exact = qa.JudgedMotion.of_profile(task, PROFILE, a)
         # 140 steps keep energies within 1e-5, and states on arrival within 1e-7 m
         assert evaluation.energy[i] == pytest.approx(
             [one.energy for one in exact.scenarios], rel=1e-5

@@ -10,7 +10,7 @@ from quietarm.ocp.profiles.free_motion import FreeMotion
 
 
 def simulate(task, free):
-    return qa.Candidate.of_free_motion(task, free)
+    return qa.JudgedMotion.of_free_motion(task, free)
 
 
 COARSE = np.array([0.0, 0.01, 0.3, 0.45, 0.8])

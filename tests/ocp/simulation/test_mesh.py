@@ -36,7 +36,10 @@ def test_steps_resolve_the_fastest_mode_on_the_way():
     # 400 rad/s halfway, where both ends say 10: two steps a radian.
     task = qa.PointToPoint(StiffMidway(), math.pi, 2.0)
     assert default_steps(task) == pytest.approx(2 * 400 * 2.0, rel=1e-2)
-    fixed, exact = rollout(task, PLAIN, []).motion, qa.Candidate.of_profile(task, PLAIN, []).motion
+    fixed, exact = (
+        rollout(task, PLAIN, []).motion,
+        qa.JudgedMotion.of_profile(task, PLAIN, []).motion,
+    )
     assert fixed.residual == pytest.approx(exact.residual, rel=1e-3)
     assert fixed.energy == pytest.approx(exact.energy, rel=1e-5)
 

@@ -16,11 +16,11 @@ FAST = qa.PointToPoint(qa.SingleLinkManipulator(omega=1e4), math.pi / 6, 1.0001,
     ("ask", "said"),
     [
         (
-            lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1]).motion,
+            lambda: qa.JudgedMotion.of_profile(TASK, PROFILE, [0.1]).motion,
             r"got 1 coefficients for a profile of 2",
         ),
         (
-            lambda: qa.Candidate.of_profile(TASK, PROFILE, [0.1, math.nan]).motion,
+            lambda: qa.JudgedMotion.of_profile(TASK, PROFILE, [0.1, math.nan]).motion,
             r"coefficient 2 is nan",
         ),
         (lambda: default_steps(FAST), r"1e\+04 radians .* resolves up to 10000"),

@@ -58,7 +58,7 @@ def test_energy_of_a_rigid_body_is_what_it_takes_to_start_and_to_stop():
 def test_the_jerk_of_the_plain_cycloid_is_largest_at_both_ends(tasks, name):
     # Eq (1) with U = t/T: theta''' = 4 pi^2 span/T^3 cos(2 pi t/T).
     peak = 4 * pi**2 * abs(tasks[name].span) / tasks[name].duration ** 3
-    exact = qa.Candidate.of_profile(tasks[name], PLAIN, []).motion
+    exact = qa.JudgedMotion.of_profile(tasks[name], PLAIN, []).motion
     for motion in (exact, rollout(tasks[name], PLAIN, []).motion):
         assert motion.peak_jerk == pytest.approx(peak, rel=1e-12)
 
@@ -93,7 +93,7 @@ def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, du
     energy, arrival = [], []
     for a in np.vstack([inside, corners]):
         fixed = rollout(task, profile, a)
-        reference = qa.Candidate.of_profile(task, profile, a)
+        reference = qa.JudgedMotion.of_profile(task, profile, a)
         energy.append(abs(fixed.motion.energy / reference.energy - 1))
         W = slice(task.plant.modes)
         arrival.append(np.abs(reference.arrival[0, W] - fixed.arrival[W]).max())
@@ -105,7 +105,7 @@ def test_default_steps_are_as_accurate_as_stated(plants, name, start, target, du
 def test_the_diagnostics_are_those_of_the_other_integrator(tasks, name):
     a = [0.02, -0.15, 0.05, -0.1]
     fixed = rollout(tasks[name], qa.CycloidPolynomial(4), a).motion
-    reference = qa.Candidate.of_profile(tasks[name], qa.CycloidPolynomial(4), a).motion
+    reference = qa.JudgedMotion.of_profile(tasks[name], qa.CycloidPolynomial(4), a).motion
     assert fixed.net_work == pytest.approx(reference.net_work, rel=1e-7)
     # Sampling misses 5e-5 of a peak at most (`residual`), beside 1e-7 m of the state.
     assert fixed.residual == pytest.approx(reference.residual, rel=6e-5, abs=1e-6)

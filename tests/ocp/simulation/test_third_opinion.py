@@ -38,7 +38,7 @@ def case(request, plants):
     """A candidate, and the third opinion of it."""
     name, a, start, target, duration = CASES[request.param]
     task = qa.PointToPoint(plants[name], target, duration, start=start)
-    candidate = qa.Candidate.of_profile(task, qa.CycloidPolynomial(len(a)), a)
+    candidate = qa.JudgedMotion.of_profile(task, qa.CycloidPolynomial(len(a)), a)
     return candidate, third_opinion(request.param)
 
 

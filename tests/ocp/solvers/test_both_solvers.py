@@ -45,7 +45,7 @@ def _solved(program, asked, solver=SOLVERS[0], start=PROFILE.plain, **settings):
 
 def _true(steps, found):
     """The energy by CVODES: IPOPT's takes in what neighbouring steps say, the SQP's does not."""
-    return qa.Candidate.of_profile(steps.task.certain, steps.profile, found.coefficients).energy
+    return qa.JudgedMotion.of_profile(steps.task.certain, steps.profile, found.coefficients).energy
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from small_robots import ARM, ARM_FILE, FILE, GANTRY, MIXED, write_robot
 
 import quietarm as qa
-from quietarm.studies.compare.judged_motions import JudgedMotion
+from quietarm.studies.compare.compared_motions import ComparedMotion
 from quietarm.studies.compare.plan_comparison import motions_table
 from quietarm.views import pictures
 from quietarm.views.formats.csv_rows import CsvRows
@@ -154,7 +154,7 @@ def test_names_of_compared_motions_keep_the_letters_of_units(plan_of):
     """Headings of peaks are of the kind of joint; what is swept has its own name."""
     swept = SimpleNamespace(name="radius", insensitivity=None)
     robustness = SimpleNamespace(sweeps=[swept], percentile=lambda *_: 0.0)
-    judged = JudgedMotion("plan", motion=plan_of(GANTRY).motion, robustness=robustness)
+    judged = ComparedMotion("plan", motion=plan_of(GANTRY).motion, robustness=robustness)
     columns = list(motions_table([judged], "linear"))
     assert "peak force [N]" in columns
     assert "peak acceleration [m/s^2]" in columns

@@ -18,7 +18,7 @@ def motion(tasks):
 
     def of(name, row):
         a = COEFFICIENTS[name][row]
-        return qa.Candidate.of_profile(tasks[name], qa.CycloidPolynomial(len(a)), a).motion
+        return qa.JudgedMotion.of_profile(tasks[name], qa.CycloidPolynomial(len(a)), a).motion
 
     return of
 
@@ -52,7 +52,7 @@ def test_the_printed_coefficients_give_what_another_simulation_gave(
 
 
 def test_what_is_seen_after_arrival_reaches_the_residual(tasks):
-    candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
+    candidate = qa.JudgedMotion.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
     trajectory, residual = candidate.trajectory, candidate.residual
     path = qa.CycloidPolynomial(0).path([], *tasks["single link"].move)
     assert trajectory.joint[:, 0] == pytest.approx(path(trajectory.time), abs=1e-12)
@@ -68,7 +68,7 @@ def test_what_is_seen_after_arrival_reaches_the_residual(tasks):
     "times", [[-0.5, 0.2], [0.3, 0.2], [0.2, 0.2], [], [[0.1, 0.2]], [0.1, np.nan]]
 )
 def test_times_that_do_not_increase_from_the_start_are_refused(tasks, times):
-    candidate = qa.Candidate.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
+    candidate = qa.JudgedMotion.of_profile(tasks["single link"], qa.CycloidPolynomial(0), [])
     with pytest.raises(ValueError, match="give finite ones that increase from 0 or later"):
         candidate.sample(times)
 

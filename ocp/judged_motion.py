@@ -38,7 +38,7 @@ from quietarm.ocp.uncertainty import perturb_plant
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate(Ranged):
+class JudgedMotion(Ranged):
     """A motion of a task, evaluated by CVODES; each quantity is computed when it is first read.
 
     For an uncertain task residual and deflection are the largest over the scenarios; all else is of
@@ -63,7 +63,9 @@ class Candidate(Ranged):
         When a quantity is read, if the residual window is too long, or CVODES fails.
     """
 
-    example: ClassVar[str] = "a motion, as plan.candidate or Candidate.of_profile(task, profile, a)"
+    example: ClassVar[str] = (
+        "a motion, as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
+    )
 
     task: PointToPoint
     path: PiecewiseMotion
@@ -75,7 +77,7 @@ class Candidate(Ranged):
     @takes(task=PointToPoint)
     def of_profile(
         cls, task: PointToPoint, profile: JointProfile, coefficients: ArrayLike
-    ) -> Candidate:
+    ) -> JudgedMotion:
         """The move along a profile; ValueError where coefficients or duration do not fit it."""
         check_profile(profile)
         path = PiecewiseMotion.of_profile(task, profile, coefficients)
@@ -85,11 +87,11 @@ class Candidate(Ranged):
 
     @classmethod
     @takes(task=PointToPoint, free=FreeMotion)
-    def of_free_motion(cls, task: PointToPoint, free: FreeMotion) -> Candidate:
+    def of_free_motion(cls, task: PointToPoint, free: FreeMotion) -> JudgedMotion:
         """The move by a free motion from the task's start."""
         return cls(task, PiecewiseMotion.of_free_motion(task, free))
 
-    def perturbed(self, errors: Mapping[str, float]) -> Candidate:
+    def perturbed(self, errors: Mapping[str, float]) -> JudgedMotion:
         """The same motion on the plant with these relative errors, and on no other."""
         if not isinstance(errors, Mapping):
             raise TypeError(
@@ -97,7 +99,7 @@ class Candidate(Ranged):
             )
         return replace(self, task=self.task.certain, errors=dict(errors))
 
-    def on(self, task: PointToPoint) -> Candidate:
+    def on(self, task: PointToPoint) -> JudgedMotion:
         """The same motion for another task of the same move, as one with errors of its plant."""
         return replace(self, task=task)
 
@@ -108,7 +110,7 @@ class Candidate(Ranged):
         return Evaluator(self.task, self.profile, steps, **options)
 
     @cached_property
-    def scenarios(self) -> tuple[Candidate, ...]:
+    def scenarios(self) -> tuple[JudgedMotion, ...]:
         """The motion in every scenario of the task, itself the first."""
         named = (dict(zip(self.task.error_names, errors)) for errors in self.task.scenarios[1:])
         return (self, *map(self.perturbed, named))

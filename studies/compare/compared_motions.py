@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from quietarm.ocp import (
-    Candidate,
     Figures,
     Floor,
+    JudgedMotion,
     Plan,
     PointToPoint,
     Robustness,
@@ -28,7 +28,7 @@ SAMPLES = 2000
 
 
 @dataclass(frozen=True)
-class JudgedMotion:
+class ComparedMotion:
     """A motion evaluated by CVODES, or why there is none.
 
     Attributes
@@ -70,19 +70,19 @@ class JudgedMotion:
 @takes(task=PointToPoint)
 def judge_motion(
     name: str,
-    moved: Plan | Floor | Candidate,
+    moved: Plan | Floor | JudgedMotion,
     ranges: Mapping[str, float],
     task: PointToPoint,
     samples: int = 0,
-) -> JudgedMotion:
+) -> ComparedMotion:
     """Evaluate a motion of a task's move within ranges of parameter errors, and by its limits.
 
     With samples, also the insensitivity, and percentiles over that many random plants.
     """
-    candidate = moved if isinstance(moved, Candidate) else moved.candidate
-    nominal = Candidate(task.certain, candidate.path)
+    candidate = moved if isinstance(moved, JudgedMotion) else moved.candidate
+    nominal = JudgedMotion(task.certain, candidate.path)
     exceeded = nominal.motion.exceeded(task.limits, OVERRUN)
-    judged = JudgedMotion(
+    judged = ComparedMotion(
         name,
         nominal.motion,
         float(task.residual_window),
@@ -103,7 +103,9 @@ def judge_motion(
         )
     elif ranges:
         judged = replace(judged, worst=worst_case(nominal, ranges))
-    return judged if isinstance(moved, Candidate) else replace(judged, seconds=moved.record.seconds)
+    return (
+        judged if isinstance(moved, JudgedMotion) else replace(judged, seconds=moved.record.seconds)
+    )
 
 
 def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
