@@ -64,7 +64,7 @@ class Option(NamedTuple):
         The default may be out of range: as None, or infinite, it stands for no bound.
         """
         name = f"{self.name.replace('_', ' ')} of the solver"
-        if value == self.default and type(value) is type(self.default):
+        if type(value) is type(self.default) and value == self.default:
             return value
         if self.words and value not in self.words:
             raise ValueError(f"{name} is {quoted(value)}; give {' or '.join(self.words)}")
