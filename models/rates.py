@@ -20,7 +20,8 @@ def rates_along(
     """Return the time derivatives of values along a motion, in symbols, matrices or arrays.
 
     The derivative is by one variable, the time from now on, in which place, amplitudes and rates
-    are linear. The acceleration along the path is no argument where its jerk is None.
+    are linear. Where the path has no jerk (None) its acceleration stays as it is: values may read
+    it, as that of the joints, but not depend on it. Tips and their speeds do not.
     """
     arguments = [*path, *W, *dW, *ddW]
     if any(isinstance(argument, ca.SX | ca.MX) for argument in arguments):
@@ -39,7 +40,7 @@ def _in_symbols(
         return value + rate * later
 
     jerk = path.jerk
-    acceleration = None if jerk is None else moved(path.acceleration, jerk)
+    acceleration = path.acceleration if jerk is None else moved(path.acceleration, jerk)
     ahead = JointMotion(
         moved(path.angle, path.speed), moved(path.speed, path.acceleration), acceleration
     )

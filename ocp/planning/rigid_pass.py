@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from quietarm.models import JointMotion, Plant
 from quietarm.models.compiled import Compiled
-from quietarm.ocp.limits import JERK, Limit
+from quietarm.ocp.limits import JERK, TORQUE_SPEED, Limit
 from quietarm.ocp.sample import sample_plant
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint
@@ -30,6 +30,10 @@ from quietarm.ocp.task import PointToPoint
 Array = NDArray[np.float64]
 _PLACES = 401
 """Of the path, the ends included."""
+_BY_THE_STRUCTURE = ("torque", TORQUE_SPEED, "deflection")
+"""Limits, beside those of the joint, that bound how soon a structure can follow. Not so its tip's
+acceleration, which is as small as one likes while the structure bends slowly, however fast the
+joint, nor quantities of one's own, of which nothing is known."""
 _NEARLY = 0.02
 """Share by which a limited value may differ from a sum, as that of a robot whose sag turns with it:
 what is refused is shorter than the bound by a larger share."""
@@ -65,7 +69,7 @@ class Rows(NamedTuple):
 def least_duration(task: PointToPoint, arrives_at_rest: bool) -> float:
     """A duration [s] below which no motion keeps the limits of a task; 0 where none is known."""
     kinematic = [limit for limit in task.limits if limit.quantity.derivative is not None]
-    dynamic = [limit for limit in task.limits if limit.quantity.derivative is None]
+    dynamic = [limit for limit in task.limits if limit.name in _BY_THE_STRUCTURE]
     by_joints = limited_rows(task, kinematic)
     forwards = by_joints.and_(limited_rows(task, dynamic, swings=not arrives_at_rest))
     braking = forwards if arrives_at_rest else by_joints
