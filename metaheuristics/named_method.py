@@ -76,7 +76,7 @@ class NamedMethod:
         return str(self) in GRADIENT
 
     def polished(self) -> NamedMethod:
-        """The same, whose front is polished."""
+        """Return this method with its front polished."""
         return replace(self, polish=True)
 
 

@@ -67,11 +67,11 @@ class Unit:
         return cls(((symbol, 1),))
 
     def on(self, joint: str, tip: str = "m") -> Unit:
-        """The same for a kind of joint, and a unit of the tip's way."""
+        """Return this unit for a kind of joint, and a unit of the tip's way."""
         return replace(self, joint=joint, tip=tip)
 
     def of(self, joint: str, tip: str = "m") -> str:
-        """Its text for these."""
+        """Return its text for a kind of joint, and a unit of the tip's way."""
         return str(self.on(joint, tip))
 
     @property
@@ -106,17 +106,17 @@ class Unit:
 
     @property
     def in_heading(self) -> str:
-        """Its text in the heading of a column: rad_s2, Nm."""
+        """The text in the heading of a column: rad_s2, Nm."""
         return self.spelt("", "_", str, "_or_")
 
     @property
     def typed(self) -> str:
-        """Its text as it is typed: Nm, rad/s^2."""
+        """The text as it is typed: Nm, rad/s^2."""
         return self.spelt("", "/", _caret, " or ")
 
     @property
     def drawn(self) -> str:
-        """Its text as it is drawn, and in HTML: rad/s\u00b2."""
+        """The text as it is drawn, and in HTML: rad/s\u00b2."""
         return self.spelt(" ", "/", _raised, " or ")
 
     def __str__(self) -> str:
@@ -170,7 +170,7 @@ DAMPING = EFFORT * SECOND / WAY
 
 @dataclass(frozen=True)
 class Words:
-    """What something is called where the joint turns, and where it slides if that differs.
+    """Words for a quantity of a joint that turns, and for one that slides if these differ.
 
     Of joints of both kinds it is called by both words.
     """
@@ -185,7 +185,7 @@ class Words:
         object.__setattr__(self, "linear", self.linear or self.rotary)
 
     def on(self, joint: str) -> Words:
-        """The same for a kind of joint."""
+        """Return these words for a kind of joint."""
         return replace(self, joint=joint)
 
     def of(self, joint: str) -> str:

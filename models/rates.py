@@ -54,7 +54,7 @@ def _in_symbols(
 def _in_numbers(
     values: ValuesAlong, path: JointMotion, W: Modes, dW: Modes, ddW: Modes
 ) -> list[Expression]:
-    """The same of numbers, or of arrays with an entry for each time."""
+    """Return the rates for numbers, or for arrays with an entry for each time."""
     numbers = [*path[:3], *([] if path.jerk is None else [path.jerk]), *W, *dW, *ddW]
     symbols = [ca.SX.sym("x") for _ in numbers]
     following = iter(symbols)

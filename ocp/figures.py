@@ -16,6 +16,7 @@ import numpy as np
 from quietarm.interrupts import interruptible
 from quietarm.models import Plant
 from quietarm.models.dimensions import JOULE, TIP, WATT, WAY, Unit, Words
+from quietarm.models.joint_motion import MIXED
 from quietarm.models.plant_file import note_added
 from quietarm.ocp.checks import instance, quoted, takes, unknown, words_of_error
 from quietarm.ocp.errors import QuietarmError
@@ -96,15 +97,15 @@ class Figure:
             ) from None
 
     def unit_on(self, plant: Plant) -> str:
-        """Its unit, of a plant."""
+        """Return the text of its unit for a plant."""
         return self.unit.of(plant.joint, plant.tip_unit)
 
     def label_on(self, plant: Plant) -> str:
-        """What it is, of a plant."""
+        """Return its label for a plant."""
         return self.label.of(plant.joint)
 
     def column_on(self, plant: Plant) -> str:
-        """Its name with its unit, as columns of a table are called."""
+        """Return the heading of its column: its name with its unit."""
         unit = self.unit.on(plant.joint, plant.tip_unit)
         return f"{self.name}_{unit.in_heading}" if unit.powers else self.name
 
@@ -133,13 +134,16 @@ def peak_figure(quantity: Quantity) -> Figure:
 
 @interruptible
 def rms(quantity: str) -> Callable[[JudgedMotion], float]:
-    """Return what gives a quantity's root mean square over the move, the largest of a joint.
+    """Return a function for `Figure`: a quantity's root mean square over the move.
 
-    ValueError where there is no such quantity.
+    For several joints it is the largest. A motion whose joints turn and slide has none, since
+    newtons and newton metres have no largest. ValueError if there is no such quantity.
     """
     _refuse_unknown(quantity)
 
     def value(candidate: JudgedMotion) -> float:
+        if _is_of_several_units(candidate, quantity):
+            return math.nan
         rows = candidate.values_of(QUANTITIES[quantity])
         return float(np.sqrt(rows**2 @ candidate.weights / candidate.task.duration).max())
 
@@ -148,13 +152,23 @@ def rms(quantity: str) -> Callable[[JudgedMotion], float]:
 
 @interruptible
 def final(quantity: str) -> Callable[[JudgedMotion], float]:
-    """Return what gives a quantity's largest absolute value on arrival; ValueError likewise."""
+    """Return a function for `Figure`: a quantity's largest absolute value on arrival.
+
+    A motion whose joints turn and slide has none. ValueError if there is no such quantity.
+    """
     _refuse_unknown(quantity)
 
     def value(candidate: JudgedMotion) -> float:
+        if _is_of_several_units(candidate, quantity):
+            return math.nan
         return float(np.abs(candidate.values_of(QUANTITIES[quantity])[:, -1]).max())
 
     return value
+
+
+def _is_of_several_units(candidate: JudgedMotion, quantity: str) -> bool:
+    """Whether a quantity of this motion has one unit for some joints and another for others."""
+    return candidate.task.plant.joint == MIXED and QUANTITIES[quantity].of_joints
 
 
 def _refuse_unknown(quantity: str) -> None:
@@ -196,7 +210,7 @@ _OVERSHOOT = Figure(
 
 
 _added: dict[str, Figure] = {}
-"""Those of one's own, by name."""
+"""Figures of the user's own, by name."""
 
 
 class _Table(Mapping[str, Figure]):
@@ -252,7 +266,7 @@ def figures_in(place: str) -> list[Figure]:
 
 
 def further_figures(place: str) -> list[Figure]:
-    """Those of a place beside residual and energy, which stand there in words of their own."""
+    """Return the figures of a place, without residual and energy, which have words of their own."""
     return [figure for figure in figures_in(place) if figure.name not in (RESIDUAL, ENERGY)]
 
 
@@ -293,7 +307,7 @@ class Figures(Mapping[str, Any], Ranged):
         return f"Figures({dict(self)})"
 
     def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """As of `Ranged`; from minus to plus the peak where no more is known."""
+        """Return a quantity's least and largest value, or minus and plus its peak."""
         if self.candidate is not None:
             return self.candidate.range_of(quantity)
         peak = self.peak(quantity.name)
@@ -305,5 +319,5 @@ class Figures(Mapping[str, Any], Ranged):
         return float(self.get(figure, math.inf))
 
     def take(self, rows: slice) -> Figures:
-        """Those of some motions, where each is an array with an entry for each."""
+        """Return the figures of some motions, where each figure is an array over motions."""
         return Figures({name: values[rows] for name, values in self._values.items()})

@@ -13,7 +13,7 @@ from quietarm.interrupts import interruptible
 def attach(
     package: str, file: str, moved: Mapping[str, str] | None = None
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], Any]:
-    """What `lazy_loader.attach_stub` gives: `__getattr__`, `__dir__` and `__all__` of a package.
+    """Return `__getattr__`, `__dir__` and `__all__` of a package, by `lazy_loader.attach_stub`.
 
     ImportError of a name that has moved says where to: an AttributeError would lose its words in
     ``from quietarm import name``.

@@ -41,7 +41,6 @@ ROOMS = {
     "metaheuristics.algorithms.settings": "metaheuristics.methods.settings",
     "metaheuristics.algorithms.building": "metaheuristics.methods.building",
     "studies.identify": "machine.identify",
-    "studies.identify.signals": "machine.recordings",
     "studies.figures": "views.pictures",
     "studies.report": "views.report",
     "studies.export": "views",

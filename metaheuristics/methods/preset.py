@@ -93,7 +93,7 @@ class Preset:
 
     @property
     def settings(self) -> tuple[MethodSetting, ...]:
-        """Its settings beside population and generations."""
+        """The settings beside population and generations."""
         if self.own is not None:
             return tuple(
                 MethodSetting(name, name, value, "of one's own", self.own.check)

@@ -65,7 +65,7 @@ class Tradeoff:
 
     @classmethod
     def begin(cls, request: Request) -> Tradeoff:
-        """Of residual and energy, on the steps that are asked for, or that the task takes.
+        """Return the trade-off of residual and energy on the requested or the usual steps.
 
         InfeasibleTaskError where not even a rigid joint is as fast as the task.
         """
@@ -77,7 +77,7 @@ class Tradeoff:
     def measured(
         cls, request: Request, objectives: tuple[str, ...], steps: int | None = None
     ) -> Tradeoff:
-        """Of these objectives, on so many steps, or as many as are asked for."""
+        """Return the trade-off of these objectives, on a number of steps."""
         task = with_peaks_measured(request.task, peak_quantities(objectives))
         program = Program.of(task, request.profile, steps or request.steps)
         return cls(request, program, objectives)
@@ -86,7 +86,7 @@ class Tradeoff:
     def of_front(
         cls, front: Front, *, starts: int, steps: int | None = None, solver: Solver = Sqp()
     ) -> Tradeoff:
-        """That of a front that is there already, within its bound; it must have a point."""
+        """Return the trade-off of a given front, within its bound; it must have a point."""
         front.smallest_residual()
         seed = front.record.seed or 0
         bound = front.record.bound
@@ -102,12 +102,12 @@ class Tradeoff:
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """What is limited: the residual, and the quantities of the peaks."""
+        """The limited axes: the residual, and the quantities of the peaks."""
         return RESIDUAL, *peak_quantities(self.objectives)
 
     @property
     def solver(self) -> Solver:
-        """What solves its programs."""
+        """The solver of its programs."""
         return self.request.solver
 
     @property
@@ -117,7 +117,7 @@ class Tradeoff:
 
     @property
     def tolerances(self) -> Tolerances:
-        """Of points between the ends: less exact than a plan; steps are doubled once."""
+        """Tolerances of points between the ends: looser than a plan's; steps are doubled once."""
         return Tolerances(energy=1e-4, most_steps=2 * self.program.steps)
 
     def problem(

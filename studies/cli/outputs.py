@@ -82,7 +82,7 @@ def _check_format(path: Path, kinds: Mapping[str, str], formats: Sequence[str]) 
 
 
 def _listed(kinds: Mapping[str, str], formats: Sequence[str]) -> str:
-    """What a command writes: its own kinds of files, and the formats."""
+    """List the files that a command writes: its own kinds, and the formats."""
     words = [f"{_NAMES.get(kind, kind)} for {meaning}" for kind, meaning in kinds.items()]
     by_meaning = dict[str, list[str]]()
     for form in formats_of(*formats):
@@ -150,7 +150,7 @@ def answer_files(
 
 
 def _exporting(answer: Any, beside: Sequence[Any]) -> Callable[[Path], Written]:
-    """What writes an answer in the format of a file's ending."""
+    """Return the function that writes an answer in the format of a file's ending."""
 
     def write(path: Path) -> Written:
         form = format_of(path)
@@ -161,7 +161,7 @@ def _exporting(answer: Any, beside: Sequence[Any]) -> Callable[[Path], Written]:
 
 
 def settings_of_studies(form: ExportFormat) -> dict[str, Any]:
-    """What studies know and a page shows: the points that the paper states."""
+    """Return the settings that a page gets from studies: the points that the paper states."""
     if all(setting.name != "known_points" for setting in form.settings):
         return {}
     from quietarm.studies.reproduce.paper import paper_points

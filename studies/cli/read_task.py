@@ -40,7 +40,7 @@ _EXAMPLES = {"target": "30deg", "duration": "0.8"}
 
 @dataclass(frozen=True)
 class Asked:
-    """What moves and where to, with all values that were typed.
+    """The plant and the move of a command, with all values that were typed.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Asked:
     uncertainty: Uncertainty | None
 
     def axes(self) -> tuple[Axis, ...]:
-        """What has several values."""
+        """The axes: quantities with several values."""
         units = self.plant.units()
         units |= {name: unit.of(self.plant.joint) for name, unit in OF_MOVES.items()}
         several = {name: values for name, values in self.values.items() if len(values) > 1}

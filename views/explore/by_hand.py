@@ -68,7 +68,7 @@ FILES: Mapping[str, Callable[[Plan, Path], object]] = {
 
 
 class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the page asks for, beside the move that it began with.
+    """A question of the page, beside the move that it began with.
 
     Attributes
     ----------
@@ -164,7 +164,7 @@ class MoveByHand:
 
     @cached_property
     def coefficient_names(self) -> list[str]:
-        """What the dials of the coefficients are called."""
+        """The names of the dials of the coefficients."""
         return [f"a{number}" for number in range(1, len(self.coefficients) + 1)]
 
     def reach_of(self, coefficient: float) -> float:
@@ -183,7 +183,7 @@ class MoveByHand:
 
     @cached_property
     def dials(self) -> dict[str, Dial]:
-        """What can be set, by name."""
+        """All dials by name."""
         reaches = map(self.reach_of, self.coefficients)
         return {
             **{name: _dial("move", name, *end) for name, end in self._ends().items()},
@@ -230,7 +230,7 @@ class MoveByHand:
 
     @cached_property
     def shown(self) -> dict[str, Any]:
-        """What stands in every field, in the units that are shown; a limit of two sides is none."""
+        """The value of every field in the unit that is shown; a limit with two sides has none."""
         terms = getattr(self.profile, "terms", None)
         chosen = {"plant": words_of_plant(self.task.plant), "profile": self.family, "terms": terms}
         return chosen | {
@@ -276,7 +276,8 @@ class MoveByHand:
             task = self.library.task(**at)
             if shown.keys().isdisjoint(self.coefficient_names):
                 coefficients = self.library.coefficients(**at).tolist()
-        task = replace(task, **{name: values[name] for name in _OF_TASK if name in values})
+        of_task = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()))
+        task = replace(task, **{name: values[name] for name in of_task if name in values})
         settings = {name: values[name] for name in ("residual_limit", "bound")}
         same = task == self.task and settings["bound"] == self.bound
         front = self.front if same else None
@@ -345,9 +346,6 @@ class MoveByHand:
             path = Path(folder, name)
             FILES[name](self.motion, path)
             return path.read_text(encoding="utf-8")
-
-
-_OF_TASK = (*OF_MOVES, *(quantity.limit for quantity in QUANTITIES.values()))
 
 
 def _dial(group: str, label: str, unit: str, *ends: float) -> Dial:

@@ -31,13 +31,14 @@ from quietarm.views.explore.by_hand import (
 from quietarm.views.page.page_moves import KnownPoints, Move, move_by_hand, moves_of
 from quietarm.views.page.trade_off import colour_name, page_html, shown_move
 from quietarm.views.pictures.grammar import looks
+from quietarm.views.pictures.motion import drawn_quantities
 from quietarm.views.report.plan_rows import HARD_REMEDIES, plan_rows
 from quietarm.views.report.words import raised
 from quietarm.views.tips import tip_scale
 
 T = TypeVar("T")
-QUANTITIES = ("deflection", "torque", "power", "angle", "speed", "acceleration", "jerk")
-"""What is drawn over time: all that can be limited, beside the angle and the power."""
+_FIRST_DRAWN = ("deflection", "torque", "power")
+"""The panels that the page begins with; all others that can be drawn follow."""
 _BYTES = 400_000
 """Of a motion or a front; curves that need more are coarser."""
 _ERRORS = (0.2, 0.1, 0.05)
@@ -82,7 +83,7 @@ class LivePage:
 
     @property
     def paths(self) -> frozenset[str]:
-        """What can be asked."""
+        """The paths of all questions that have an answer."""
         return frozenset(self._answers)
 
     def html(self) -> str:
@@ -132,7 +133,7 @@ class LivePage:
         cycloid = self._latest(asked.task, lambda: evaluate_coefficients(asked.task, []))
         move = move_by_hand(asked.motion, cycloid)
         return {
-            "move": shown_move(move, _BYTES, quantities=QUANTITIES),
+            "move": shown_move(move, _BYTES, quantities=_drawn()),
             "fields": _fields(asked),
         }
 
@@ -160,7 +161,7 @@ class LivePage:
         return lambda question, _: {"name": name, "text": self._asked(question).file(name)}
 
     def _latest(self, key: Hashable, compute: Callable[[], T]) -> T:
-        """What was computed for one of the latest questions, or is computed now."""
+        """Return the answer to a question: a kept one, or one that is computed now."""
         if key not in self._kept:
             self._kept[key] = compute()
         self._kept.move_to_end(key)
@@ -169,15 +170,20 @@ class LivePage:
         return self._kept[key]
 
 
+def _drawn() -> tuple[str, ...]:
+    """Return the names of all panels over time, those of a user's own quantities included."""
+    return tuple(dict.fromkeys([*_FIRST_DRAWN, *drawn_quantities()]))
+
+
 def _shown_front(traced: _Traced) -> dict[str, Any]:
     """All that the scripts need of a front, and the coefficients of its motions."""
     coefficients = [[*map(float, choice.plan.coefficients)] for choice in traced.move.choices]
-    shown = shown_move(traced.move, _BYTES, quantities=QUANTITIES)
+    shown = shown_move(traced.move, _BYTES, quantities=_drawn())
     return {**shown, "coefficients": coefficients}
 
 
 def _key(question: Question) -> str:
-    """The same text for the same question."""
+    """Return a text that is the same for equal questions."""
     return json.dumps(msgspec.to_builtins(question), sort_keys=True)
 
 
@@ -192,7 +198,7 @@ def _rows(asked: MoveByHand) -> list[list[str]]:
 
 
 def _fields(asked: MoveByHand) -> dict[str, Any]:
-    """What can be set: values, ranges, and the coefficients of the plain motion."""
+    """Return the fields of the page: values, ranges, and the coefficients of the plain motion."""
     return {
         "shown": asked.shown,
         "dials": [

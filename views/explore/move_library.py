@@ -20,7 +20,7 @@ class LibraryAxis(Protocol):
 
     @property
     def values(self) -> Sequence[float]:
-        """Its values in SI units, which rise."""
+        """The values in SI units, which rise."""
         ...
 
     @property

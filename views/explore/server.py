@@ -131,7 +131,7 @@ class Desk:
 
 
 def _policy(html: str) -> str:
-    """What a browser may do for the page: run its own script, and ask its own server."""
+    """Return the policy for the browser: run the page's own script, and ask its own server."""
     (script,) = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (

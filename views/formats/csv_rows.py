@@ -25,5 +25,5 @@ class CsvRows(ExportFormat):
         return csv_table(table(plan, columns, rate), "%.12g")
 
     def note(self, plan: Plan, *args: Any, columns: str, rate: float) -> str:
-        """What a controller leaves that interpolates between the rows, where that matters."""
+        """Say what a controller leaves that interpolates between the rows, if it matters."""
         return note_of_rows(plan, columns, rate)

@@ -43,5 +43,5 @@ class MatlabFile(ExportFormat):
         return file.getvalue()
 
     def note(self, plan: Plan, *args: Any, columns: str, rate: float) -> str:
-        """What a controller leaves that interpolates between the rows, where that matters."""
+        """Say what a controller leaves that interpolates between the rows, if it matters."""
         return note_of_rows(plan, columns, rate)

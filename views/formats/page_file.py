@@ -20,7 +20,7 @@ from quietarm.views.report.words import counted
 
 
 class PageFile(ExportFormat):
-    """Of fronts of a move the first is dragged along; what else is given lies beside it."""
+    """A page: one drags along the first front of a move; other answers lie beside it."""
 
     name = "html"
     endings = (".html", ".htm")

@@ -43,7 +43,7 @@ class RosTrajectory(ExportFormat):
         )
 
     def note(self, plan: Plan, *args: Any, rate: float, **others: Any) -> str:
-        """What the controller leaves, which takes a quintic between two points."""
+        """Say what the controller leaves, which takes a quintic between two points."""
         return interpolation_note(plan, rate)
 
 

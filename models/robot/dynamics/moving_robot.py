@@ -19,7 +19,7 @@ from quietarm.models.robot.frames import Frame
 
 
 class MovingRobot(RobotParts):
-    """What follows from a robot's parts: bodies, equations, modes, where its links stand."""
+    """A robot with what follows from its parts: bodies, equations, modes, places of links."""
 
     @cached_property
     def unscaled(self) -> Mechanism:
@@ -72,7 +72,7 @@ class MovingRobot(RobotParts):
 
     @interruptible
     def frequencies(self, q: Sequence[float] | Array) -> Array:
-        """Of all modes with the driven joints held at q [rad/s], under gravity.
+        """Frequencies of all modes with the driven joints held at q [rad/s], under gravity.
 
         ValueError where a spring is too soft to carry its load.
         """

@@ -51,7 +51,7 @@ class RobotParts:
 
     @cached_property
     def description(self) -> Urdf:
-        """What the URDF says."""
+        """The links and joints of the URDF."""
         return read_urdf(self.urdf)
 
     @cached_property

@@ -59,7 +59,7 @@ class ExportCommand(Command):
 
     @property
     def own_params(self) -> list[click.Parameter]:
-        """Its own options, and those of the formats."""
+        """The command's own options, and those of the formats."""
         return [*super().own_params, _format_option(), *_setting_options()]
 
 
@@ -71,7 +71,7 @@ def _format_option() -> click.Option:
 
 
 def _value_after(name: str, words: Sequence[str]) -> str | None:
-    """What was typed of an option, if it was."""
+    """Return the text that was typed for an option; None if there is none."""
     for word, following in zip(words, [*words[1:], None]):
         if word == "--":
             return None
@@ -104,7 +104,7 @@ def _help_of(settings: Sequence[tuple[str, ExportSetting]]) -> str:
 
 
 def _help_line(setting: ExportSetting, names: Sequence[str]) -> str:
-    """What a setting means to some formats."""
+    """Return the meaning of a setting for some formats, with its default."""
     default = setting.default
     words = "" if default is None else f"{default:g}" if isinstance(default, float) else default
     ending = f" [default: {words}]" if default is not None else ""
@@ -169,7 +169,7 @@ def _progress(form: ExportFormat) -> AbstractContextManager[Progress | None]:
 
 
 def _answers(form: ExportFormat, paths: Sequence[Path]) -> Mapping[str, Any]:
-    """What is exported, by what it is called, after its motions were evaluated again."""
+    """Load the answers to export, by their names, and evaluate their motions again."""
     if len(paths) == 1 and paths[0].is_dir():
         if DATASET not in form.takes:
             raise ValueError(
@@ -199,7 +199,7 @@ def _format(given: Given) -> ExportFormat:
 
 
 def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
-    """What was typed of the format's settings; those of other formats are refused."""
+    """Read the typed settings of a format; refuse those of other formats."""
     for other in known_formats().values():
         for setting in other.settings:
             takers = [taker.name for taker in takers_of(setting.name)]
@@ -212,7 +212,7 @@ def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
 
 
 def _read(setting: ExportSetting, text: str) -> Any:
-    """What was typed of a setting, as the value that it is."""
+    """Read the typed value of a setting."""
     if setting.type_of_value is str:
         return text
     if setting.type_of_value is float:

@@ -9,17 +9,21 @@ import pytest
 from robots import straight, ur5_with_bar
 
 from quietarm.models import SingleLinkManipulator
+from quietarm.models.dimensions import SECOND, TIP, Words
 from quietarm.ocp import (
     InfeasibleTaskError,
     Plan,
     PointToPoint,
+    Quantity,
     Uncertainty,
+    add_quantity,
     epsilon_front,
     evaluate_coefficients,
+    remove_quantity,
 )
 from quietarm.studies.reproduce.paper import paper_points
 from quietarm.views.explore.by_hand import MoveByHand, open_plant
-from quietarm.views.explore.live_page import QUANTITIES, LivePage
+from quietarm.views.explore.live_page import LivePage
 from quietarm.views.page.samples import unpacked
 from quietarm.views.page.trade_off import trade_off
 
@@ -50,7 +54,8 @@ def test_a_motion_is_that_of_cvodes_with_every_quantity_over_time(page):
     plan = evaluate_coefficients(task, [*coefficients.values()])
     (point,) = answer["move"]["points"]
     assert (point["residual"], point["energy"]) == (plan.residual, plan.energy)
-    assert tuple(answer["move"]["panels"]) == QUANTITIES
+    drawn = ["deflection", "torque", "power", "angle", "speed", "acceleration", "jerk"]
+    assert list(answer["move"]["panels"]) == drawn
     speeds = unpacked(answer["move"]["panels"]["speed"]["values"])[0, 0]
     assert np.abs(speeds).max() == pytest.approx(plan.motion.peak_speed, rel=0.01)
     # a limit that a motion comes near stands in its panel
@@ -155,3 +160,16 @@ def test_a_plan_of_a_robot_has_its_duration_set_and_all_its_joints_over_time():
         assert answer["move"]["panels"][name]["names"] == list(task.plant.joint_names)
     # the robot's tables reach from -16 to +14 % of the frequency
     assert ask(page, "robustness")["robustness"]["errors"][-1] == 10.0
+
+
+def test_a_quantity_of_a_users_own_has_its_panel_and_its_dial():
+    add_quantity(
+        Quantity("tip_haste", TIP / SECOND, Words("tip haste"), lambda sample: sample.tip_speeds)
+    )
+    try:
+        answer = ask(LivePage(open_plant(LINK)), "motion", values={"tip_haste_limit": 0.5})
+        panel = answer["move"]["panels"]["tip_haste"]
+        assert panel["limits"] == [[-0.5, 0.5]]
+        assert answer["fields"]["shown"]["tip_haste_limit"] == 0.5
+    finally:
+        remove_quantity("tip_haste")

@@ -10,6 +10,8 @@ import pytest
 from small_robots import ARM, ARM_FILE, FILE, GANTRY, MIXED, write_robot
 
 import quietarm as qa
+from quietarm.models.dimensions import EFFORT, Words
+from quietarm.ocp import Figure, add_figure, remove_figure, rms
 from quietarm.studies.compare.compared_motions import ComparedMotion
 from quietarm.studies.compare.plan_comparison import motions_table
 from quietarm.views import pictures
@@ -63,6 +65,15 @@ def test_rows_of_a_mixed_robot_have_each_kind_of_joint(plan_of):
     assert words == f"{torques[0]:.4g} N (x) and {torques[1]:.4g} N m (radial-axis)"
     assert "x 900 N; radial-axis 500 N m" in rows["limits"]
     assert "speed radial-axis 2 rad/s" in rows["limits"]
+
+
+def test_an_rms_over_newtons_and_newton_metres_is_none(plan_of):
+    add_figure(Figure("rms_effort", EFFORT, Words("RMS torque", "RMS force"), rms("torque")))
+    try:
+        assert "rms_effort" not in plan_of(MIXED).figures
+        assert dict(plan_rows(plan_of(GANTRY)))["RMS force"].endswith(" N")
+    finally:
+        remove_figure("rms_effort")
 
 
 def test_rows_of_a_robot_have_the_units_of_its_joints(tmp_path):
