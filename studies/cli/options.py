@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from functools import partial
 from pathlib import Path
@@ -61,6 +61,8 @@ class Command(click.Command):
         for file in _plant_files(args):
             with suppress(ValueError):  # the option's own reading says what is wrong
                 load_plant_file(file)
+        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        _refuse_repeated(order)
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
@@ -85,6 +87,15 @@ class Command(click.Command):
         _refuse_lost_answer(ctx)
         if self.callback is not None:
             self.callback(Given(ctx))
+
+
+def _refuse_repeated(order: Sequence[click.Parameter]) -> None:
+    """Refuse an option of one value that a line has twice: click would take the last of them."""
+    for param in order:
+        times = order.count(param)
+        of_one_value = isinstance(param, click.Option) and not (param.multiple or param.is_flag)
+        if of_one_value and times > 1:
+            raise click.UsageError(f"{param.opts[0]} is given {times} times; give it once")
 
 
 def _plant_files(args: Iterable[str]) -> Iterator[str]:

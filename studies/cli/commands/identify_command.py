@@ -45,29 +45,18 @@ _UNITS = ("As time:ms,angle:deg,tip:mm,acceleration:g, of a linear axis angle:mm
           "[default: those of the columns' names, or SI]")  # fmt: skip
 
 
-def _once(name: str, words: str) -> click.Option:
-    """An option that takes one column: given twice it is refused, where click takes the last."""
-    return click.Option([name], multiple=True, help=words, callback=_alone)
-
-
-def _alone(context: click.Context, option: click.Parameter, names: tuple[str, ...]) -> str | None:
-    if len(names) > 1:
-        raise click.UsageError(f"{option.opts[0]} is given {len(names)} times; give it once")
-    return names[0] if names else None
-
-
 @command(
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
     SET,
-    _once("--time", "Column of the time.  [default: the one that is called so, or the first if it "
-          "rises evenly]"),
+    option("--time", help="Column of the time.  [default: the one that is called so, or the first "
+           "if it rises evenly]"),
     option("--rate", type=Parsed("rate", parse_rate), help="Samples per second, as 1kHz, of files "
            "without a column of the time."),
-    _once("--angle", "Column of the joint's angle, of a linear axis its position; without it the "
-          "joint was held."),
+    option("--angle", help="Column of the joint's angle, of a linear axis its position; without "
+           "it the joint was held."),
     option("--tip", multiple=True, help="Column of a tip's displacement."),
     option("--acceleration", multiple=True, help="Column of an accelerometer at a tip."),
-    _once("--torque", "Column of the joint's torque, of a linear axis its force."),
+    option("--torque", help="Column of the joint's torque, of a linear axis its force."),
     option("--units", type=Parsed("units", parse_units), help=_UNITS),
     option("--scale", "scales", type=Parsed("scale", parse_scales), multiple=True,
            help="What a count is in SI units, as angle=2pi/4096,tip=1e-5."),
