@@ -3,11 +3,13 @@
     pip install ".[benchmark]"
     python benchmarks/real_drive.py [--machine gantry picker] [--output real_drive.csv]
     python benchmarks/real_drive.py --page
+    python benchmarks/real_drive.py --recordings
 
 The machines are not quietarm's model (`parts/drive`). Each is recorded as a user records it, then
 planned for by quietarm with what it identifies, and its set points are replayed at 1 kHz on
 machines that differ in one property at a time. The csv has a row for every run. `--page` writes the
-tables of docs/drive.md from the csv; without it the csv is made anew, too.
+tables of docs/drive.md from the csv; without it the csv is made anew, too. `--recordings` writes
+the recordings that the pages use, of a tool that swings while its axis moves.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from parts.drive import page
+from parts.drive import page, recordings
 from parts.drive.machines import Machine
 from parts.drive.measures import Outcome, outcomes
 from parts.drive.moves import MOVES, Move, plan, shaper_over_ruckig
@@ -44,6 +46,8 @@ WITHIN = tuple(error for error in ERRORS if abs(error) <= RANGE)
 """Those within the range of the robust plans."""
 BEST = "on the way"
 """The way to record that gives the frequency, but for the study of ways."""
+RECORDINGS = Path(__file__).parents[1] / "docs" / "recordings"
+"""The recordings that the pages use."""
 AT_ONCE = 300
 """Runs that are simulated side by side."""
 
@@ -292,8 +296,14 @@ def main() -> None:
     parser.add_argument("--machine", nargs="+", choices=MOVES, default=list(MOVES))
     parser.add_argument("--output", type=Path, default=page.RESULTS, help="csv to write")
     parser.add_argument("--page", action="store_true", help="only write the page from the csv")
+    parser.add_argument("--recordings", action="store_true", help="only write docs/recordings")
     options = parser.parse_args()
     out = console()
+    if options.recordings:
+        for name in options.machine:
+            recordings.save(BEST, MOVES[name], MOVES[name].machine, RECORDINGS / f"{name}.csv")
+            out.print(f"wrote {RECORDINGS / name}.csv")
+        return
     if not options.page:
         out.print(machine())
         table = list[list[str]]()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from .simulate import TICKS, SetPoints, simulate
 
 EVERY = 4
 """Ticks of the servo between two samples of a recording."""
+SPARSE = 4
+"""Samples from one row of a recording's file to the next."""
 SWINGS = 30
 """Periods that a recording lasts."""
 OVERSHOOT = 1.5
@@ -78,6 +81,16 @@ WAYS: dict[str, Callable[[Move, Machine], Signal]] = {
     "on the way": on_the_way,
 }
 """The ways to record, by the names of the table."""
+
+
+def save(way: str, move: Move, machine: Machine, path: Path) -> None:
+    """Write a recording as a csv, as the laser sees the tool."""
+    time, tool, _ = WAYS[way](move, machine)
+    seen = tool + np.random.default_rng(0).normal(0, move.noise, len(tool))
+    rows = zip(time[::SPARSE], 1e3 * seen[::SPARSE])
+    lines = ["time_s,tool_mm", *(f"{seconds:.3f},{away:.3f}" for seconds, away in rows)]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines) + "\n")
 
 
 def identified(way: str, move: Move, machine: Machine) -> tuple[float, float, float]:
