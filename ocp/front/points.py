@@ -289,12 +289,31 @@ def point_of(motion: JudgedMotion, objectives: Sequence[str]) -> FrontPoint:
     return FrontPoint(motion.coefficients, motion.residual, motion.energy, peaks=peaks)
 
 
+BENDS = 0.1
+"""How far a knee lies below the line through the ends, as a share of the objectives' spans."""
+
+
 def knee_of(points: NDArray[np.float64]) -> int:
     """Which of the points, a column an objective, is farthest below the plane through the ends.
 
     All objectives are scaled; the first one where there are fewer than three or no trade-off.
     """
+    return _farthest_below(points)[0]
+
+
+def has_knee(points: NDArray[np.float64]) -> bool:
+    """Whether a front bends: a point lies a tenth of the spans below the plane through the ends.
+
+    On a front that is nearly straight, which point is farthest below is chance.
+    """
+    return _farthest_below(points)[1] >= BENDS
+
+
+def _farthest_below(points: NDArray[np.float64]) -> tuple[int, float]:
+    """The point that is farthest below the plane through the ends, and how far, scaled."""
     spans = np.ptp(points, axis=0)
     if len(points) < 3 or not np.all(spans > 0):
-        return 0
-    return int(np.argmin((points / spans).sum(axis=1)))
+        return 0, 0.0
+    heights = ((points - points.min(axis=0)) / spans).sum(axis=1)
+    lowest = int(np.argmin(heights))
+    return lowest, float(1.0 - heights[lowest])

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
-from quietarm.ocp.front.points import knee_of
+from quietarm.ocp.front.points import has_knee, knee_of
 from quietarm.ocp.record import REST
 from quietarm.views.pictures.grammar import INK
 from quietarm.views.tips import tip_scale, tip_words
@@ -18,14 +18,15 @@ Array = NDArray[np.float64]
 def mark_points(ax: Axes, front: Array, tip_unit: str) -> None:
     """Mark and name points of a front, shape (n, 2): residuals [tip's unit], rising, energies [J].
 
-    The stillest, the cheapest, the knee, and what 1 mm allows, each with its figures in the legend.
+    The stillest, the cheapest, the knee if the front bends, and what 1 mm allows, each with its
+    figures in the legend.
     """
     if not len(front):
         return
     named = {"stillest": ("<", front[0])}
     if len(front) > 1:
         named["cheapest"] = (">", front[-1])
-    if len(front) > 2:
+    if has_knee(front):
         named["knee"] = ("o", front[knee_of(front)])
     if front[0, 0] < SEARCH_RESIDUAL < front[-1, 0]:
         energy = float(np.interp(SEARCH_RESIDUAL, front[:, 0], front[:, 1]))

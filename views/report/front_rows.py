@@ -10,7 +10,7 @@ import numpy as np
 from quietarm.metaheuristics.evaluation.noise import belief_of
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
-from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.points import LEVELS, has_knee
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import FRONT, QUANTITIES
@@ -131,7 +131,7 @@ def _residual_line(task: PointToPoint) -> str:
 
 
 def _chosen_points(front: Front) -> list[str]:
-    """The ends and the knee, a line each; of two points none is a knee."""
+    """The ends and the knee, a line each."""
     if not front.points:
         return []
     chosen = {"least residual": front.smallest_residual(), "knee": front.knee(),
@@ -140,10 +140,14 @@ def _chosen_points(front: Front) -> list[str]:
         quantity = objective.quantity
         least = min(front.points, key=lambda point, name=quantity: point.peaks[name])
         chosen[f"least {QUANTITIES[quantity].words.of(front.task.plant.joint)}"] = least
-    if len(front.points) < 3:
+    bends = has_knee(front.objective_values)
+    if not bends:
         del chosen["knee"]
     width = max(15, *(len(name) + 1 for name in chosen))
-    return [f"  {name:{width}}{_point_in_words(front, point)}" for name, point in chosen.items()]
+    lines = [f"  {name:{width}}{_point_in_words(front, point)}" for name, point in chosen.items()]
+    if not bends and len(front.points) > 2:
+        lines.insert(1, f"  {'knee':{width}}none, the front is nearly straight")
+    return lines
 
 
 def _peaks_of(front: Front) -> list[Objective]:

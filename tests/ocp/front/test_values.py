@@ -10,6 +10,7 @@ from moves import ARM
 
 import quietarm as qa
 from quietarm.ocp import FileFormatError, FrontPoint, Mark, Record, non_dominated
+from quietarm.ocp.front.points import has_knee
 
 
 def _points(*figures):
@@ -75,6 +76,19 @@ def test_the_knee_is_farthest_below_the_line_between_the_ends(figures):
     F = (F - F[-1]) / (F[0] - F[-1])  # the ends at (1, 1) and (0, 0)
     below = (1 - F[:, 1] - (1 - F[:, 0])) / math.sqrt(2)
     assert below[front.points.index(front.knee())] >= below.max() - 1e-9
+
+
+@pytest.mark.parametrize(
+    ("energies", "bends"),
+    [
+        ((0.9, 0.4, 0.3), True),  # after a ninth of the way 5/6 of the energy is saved
+        ((0.9, 0.8, 0.3), False),  # 0.1 of 0.6 after a ninth: 1/18 below the line
+        ((0.9, 0.3), False),  # its ends alone
+    ],
+)
+def test_a_front_has_a_knee_if_it_bends_by_a_tenth(energies, bends):
+    residuals = (0.0, 1e-3, 9e-3) if len(energies) == 3 else (0.0, 9e-3)
+    assert has_knee(np.column_stack([residuals, energies])) is bends
 
 
 figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energies
