@@ -371,16 +371,16 @@ def _certify(
     tightened = limits
     candidate = _by_cvodes(program, solution)
     for _ in range(rounds):
-        if not candidate.exceeded(limits, tolerated):
+        if not candidate.figures.exceeded(limits, tolerated):
             break
-        tightened = tighten(tightened, candidate, limits)
+        tightened = tighten(tightened, candidate.figures, limits)
         following = program.solve(solution.free, tightened, warm=True)
         if not following.status.solved:
             break
         solution = following
         candidate = _by_cvodes(program, solution)
     remedy = "the grid is too coarse for this motion; give a smaller energy tolerance"
-    error = excess_error(candidate, limits, remedy)
+    error = excess_error(candidate.figures, limits, remedy)
     if error is not None:
         raise error
     return solution, candidate

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.figures import ENERGY
-from quietarm.ocp.limits import RESIDUAL, Limit, Ranged
-from quietarm.ocp.planning.certify import OF_A_PLAN, by_cvodes, certify_one
+from quietarm.ocp.judged_motion import JudgedMotion
+from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.planning.certify import by_cvodes, certify_one
 from quietarm.ocp.solvers.choice import stand_in
 from quietarm.ocp.solvers.least_excess import least_excess
-from quietarm.ocp.solvers.problem import STILL, Program, Solution
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, STILL, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
 
 Array = NDArray[np.float64]
@@ -191,14 +192,14 @@ def least_peaks_of(
 def true_peaks(
     limits: Sequence[Limit],
     least: Mapping[str, AnyAttempt],
-    resimulated: Callable[[AnyAttempt], Ranged],
+    resimulated: Callable[[AnyAttempt], JudgedMotion],
 ) -> dict[str, float]:
     """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
 
     def peak_of(limit: Limit, attempt: AnyAttempt) -> float:
         at_nodes = attempt.peaks[limit.name]
         try:
-            return max(at_nodes, limit.peak_of(resimulated(attempt)))
+            return max(at_nodes, limit.peak_of(resimulated(attempt).figures))
         except SolverFailedError:
             return at_nodes
 
@@ -229,7 +230,7 @@ def _confirm(problem: Program, least: Mapping[str, Solution], solver: Solver) ->
     """Those least peaks with which there is a plan, as CVODES finds them."""
     limits = problem.limits
 
-    def resimulated(solution: Solution) -> Ranged:
+    def resimulated(solution: Solution) -> JudgedMotion:
         return by_cvodes(problem, solution.coefficients)
 
     peaks = true_peaks(limits, least, resimulated)
@@ -278,9 +279,9 @@ def has_a_plan(problem: Program, start: Array, solver: Solver, most_refined: int
     (solution,) = solver.solve([problem], [start])
     if not solution.status.solved:
         return False
-    steps = min(most_refined * problem.steps, OF_A_PLAN.most_steps)
+    steps = min(most_refined * problem.steps, MOST_SOLVER_STEPS)
     try:
-        certify_one(problem, solution, solver, replace(OF_A_PLAN, most_steps=steps))
+        certify_one(problem, solution, solver, most_steps=steps)
     except SolverFailedError:
         return False
     return True

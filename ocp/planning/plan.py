@@ -28,7 +28,7 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
-from quietarm.ocp.robustness import Sensitivity, Worst, peaks_between, sensitivities
+from quietarm.ocp.robustness import Sensitivity, peaks_between, sensitivities
 from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
@@ -107,15 +107,15 @@ class Plan(MotionAnswer):
         return JudgedMotion.of_profile(self.task, self.profile, self.coefficients)
 
     @cached_property
-    def peaks(self) -> tuple[Worst, ...]:
-        """Peaks of the residual within the ranges of an uncertain task; the worst first."""
+    def peaks(self) -> tuple[JudgedMotion, ...]:
+        """The motion where its residual peaks within the ranges of its task; the worst first."""
         return tuple(peaks_between(self.candidate))
 
     @property
-    def worst(self) -> Worst | None:
-        """The worst case of an uncertain task; None if the task is certain.
+    def worst(self) -> JudgedMotion | None:
+        """The motion in the worst case of an uncertain task; None if the task is certain.
 
-        These are the errors within its ranges with the largest residual, also between the
+        Its `errors` are those within the ranges with the largest residual, also between the
         scenarios.
         """
         return self.peaks[0] if self.peaks else None

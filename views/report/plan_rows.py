@@ -18,7 +18,6 @@ from quietarm.ocp import (
     Plan,
     PointToPoint,
     ShapedCycloid,
-    Worst,
 )
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
 from quietarm.ocp.joint_words import figure_words
@@ -162,7 +161,7 @@ def sensitivity_rows(plan: Plan) -> list[Row]:
     ]
 
 
-def worst_in_words(worst: Worst, tip_unit: str) -> str:
+def worst_in_words(worst: JudgedMotion, tip_unit: str) -> str:
     """The residual of the worst case, and the parameter errors that it comes with."""
     return f"{tip_words(worst.residual, tip_unit)} with {_signed(worst.errors)}"
 
@@ -171,7 +170,7 @@ def _signed(errors: Mapping[str, float]) -> str:
     return ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
 
 
-def _worst_of_plan(plan: Plan, worst: Worst) -> str:
+def _worst_of_plan(plan: Plan, worst: JudgedMotion) -> str:
     """The worst case of a robust plan, and how far it is from the residual limit."""
     words = worst_in_words(worst, plan.task.plant.tip_unit)
     if plan.excess is None:
