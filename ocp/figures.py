@@ -29,7 +29,6 @@ from quietarm.ocp.limits import (
     Limit,
     Quantity,
 )
-from quietarm.ocp.record import REST
 
 if TYPE_CHECKING:
     from quietarm.ocp.judged_motion import JudgedMotion
@@ -187,7 +186,6 @@ _FIRST = (
         Words("residual"),
         lambda candidate: candidate.residual,
         symbol="F1",
-        agreement=REST,
     ),
     Figure(ENERGY, JOULE, Words("energy"), lambda candidate: candidate.energy, symbol="F2"),
     Figure(

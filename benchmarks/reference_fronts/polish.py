@@ -24,8 +24,9 @@ from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.certify import Certified, certify
 from quietarm.ocp.record import versions
+from quietarm.ocp.rest import STILL
 from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.solvers.problem import STILL, Program
+from quietarm.ocp.solvers.problem import Program
 from quietarm.ocp.solvers.sqp import Sqp
 
 STEPS = 500

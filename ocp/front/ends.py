@@ -12,15 +12,15 @@ from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
     best_of_starts,
-    least_peaks_of,
     solve_from_starts,
 )
 from quietarm.ocp.planning.certify import Certified, certify_one
+from quietarm.ocp.planning.remedies import least_peaks_of
+from quietarm.ocp.rest import still_of
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
     Program,
     Solution,
-    still_of,
 )
 
 

@@ -18,16 +18,15 @@ from quietarm.ocp.figures import ENERGY, Figures
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity
 from quietarm.ocp.profiles.check_profile import check_motion
+from quietarm.ocp.rest import still_of
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
-    STILL_SHARE,
     Program,
     Solution,
     evaluate,
     programs_of,
-    still_of,
 )
 from quietarm.ocp.solvers.solver import Solver
 
@@ -148,8 +147,8 @@ class _Row:
         self.asked = problem
         self.tightened = problem.limits
         self.limits = problem.limits if limits is None else limits
-        still_share = STILL_SHARE * problem.plain_residual
-        self.still = max(still_of(problem.task), still_share)
+        # a share of what the plain motion leaves counts as none as well
+        self.still = max(still_of(problem.task), 1e-7 * problem.plain_residual)
         self.tried: list[Certified] = []
         self.arrival: Array = np.empty(0)
         self.failure: SolverFailedError | None = None

@@ -29,7 +29,7 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import rest_of
 from quietarm.ocp.robustness import peaks_between
 from quietarm.ocp.solvers.problem import Program, Solution
 
@@ -87,7 +87,7 @@ def _adapt_limit(request: Request) -> Plan:
         nominal_worst = nominal.worst.residual
         # of many random starts, as networks take them, those stand for the others that led there
         starts = [*motions, *starts[: max(request.starts, _NOMINAL_STARTS - len(motions))]]
-    most = max(nominal_worst, REST * request.task.smallness)
+    most = max(nominal_worst, rest_of(request.task))
     limit = min(request.residual_limit, most)
     try:
         plan = _hold(request.within(limit), starts, gives_up=True)

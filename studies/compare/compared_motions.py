@@ -65,6 +65,13 @@ class ComparedMotion:
     why: str = ""
     meaning: str = ""
 
+    @property
+    def task(self) -> PointToPoint:
+        """The move of the nominal plant."""
+        assert self.motion is not None
+        assert self.motion.candidate is not None  # which CVODES has judged
+        return self.motion.candidate.task
+
 
 @takes(task=PointToPoint)
 def judge_motion(

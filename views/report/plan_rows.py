@@ -26,7 +26,8 @@ from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_along import EXCESS
-from quietarm.ocp.record import AGREEMENT, REST
+from quietarm.ocp.record import AGREEMENT
+from quietarm.ocp.rest import is_at_rest, rest_of
 from quietarm.views.report.robot_rows import way_rows
 from quietarm.views.report.words import (
     move_of,
@@ -83,7 +84,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
 
 def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
-    if plan.worst is None or plan.worst.residual < REST * plan.task.smallness:
+    if plan.worst is None or is_at_rest(plan.worst.residual, plan.task):
         return []
     residual = _tip(plan.task, plan.worst.residual)
     return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
@@ -253,10 +254,9 @@ def _figure_rows(
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
     motion = candidate.motion
     residual = _tip(task, motion.residual)
-    rest = REST * task.smallness
-    if motion.residual < rest:  # nobody sees a difference
+    if is_at_rest(motion.residual, task):
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {_tip(task, rest)})"
+        residual = f"{where} (below {_tip(task, rest_of(task))})"
     energy = f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"
     rows = {
         ENERGY: ("energy (F2)", f"{energy}{_warnings(task, ENERGY)}"),
