@@ -233,7 +233,7 @@ def left(plan: Any, drawn: int = 60) -> float:
 
 def beyond(plan: Any) -> float:
     """The largest share by which the motion passes a limit on its way."""
-    exceeded = plan.candidate.exceeded(plan.task.limits)
+    exceeded = plan.figures.exceeded(plan.task.limits)
     return max(exceeded.values(), default=1.0) - 1
 
 

@@ -59,7 +59,6 @@ from .record import Verification as Verification
 from .robustness import Robustness as Robustness
 from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep
-from .robustness import Worst as Worst
 from .robustness import evaluate_robustness as evaluate_robustness
 from .simulation.evaluator import Evaluation as Evaluation
 from .simulation.evaluator import Evaluator as Evaluator

@@ -7,7 +7,7 @@ judged. One's own, by `add_figure`, stands wherever those of quietarm do.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -26,10 +26,9 @@ from quietarm.ocp.limits import (
     QUANTITIES,
     REPORT,
     RESIDUAL,
+    Limit,
     Quantity,
-    Ranged,
 )
-from quietarm.ocp.record import REST
 
 if TYPE_CHECKING:
     from quietarm.ocp.judged_motion import JudgedMotion
@@ -187,7 +186,6 @@ _FIRST = (
         Words("residual"),
         lambda candidate: candidate.residual,
         symbol="F1",
-        agreement=REST,
     ),
     Figure(ENERGY, JOULE, Words("energy"), lambda candidate: candidate.energy, symbol="F2"),
     Figure(
@@ -270,7 +268,7 @@ def further_figures(place: str) -> list[Figure]:
     return [figure for figure in figures_in(place) if figure.name not in (RESIDUAL, ENERGY)]
 
 
-class Figures(Mapping[str, Any], Ranged):
+class Figures(Mapping[str, Any]):
     """Figures by name, each computed when it is first read; also as attributes.
 
     Of a motion there are those that it has: none of the jerk where the acceleration jumps.
@@ -305,6 +303,13 @@ class Figures(Mapping[str, Any], Ranged):
 
     def __repr__(self) -> str:
         return f"Figures({dict(self)})"
+
+    def exceeded(self, limits: Iterable[Limit], tolerance: float = 0.0) -> dict[str, float]:
+        """Return what exceeds its limit by more than a share: its peak over the limit, by name."""
+        ratios = {
+            limit.name: limit.peak_of(self) / limit.size for limit in limits if limit.size > 0
+        }
+        return {name: ratio for name, ratio in ratios.items() if ratio > 1 + tolerance}
 
     def range_of(self, quantity: Quantity) -> tuple[float, float]:
         """Return a quantity's least and largest value, or minus and plus its peak."""

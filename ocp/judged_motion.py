@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.checks import numbers, quoted, takes
 from quietarm.ocp.figures import Figures
-from quietarm.ocp.limits import JERK, RESIDUAL, Quantity, Ranged
+from quietarm.ocp.limits import JERK, RESIDUAL, Quantity
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -38,7 +38,7 @@ from quietarm.ocp.uncertainty import perturb_plant
 
 
 @dataclass(frozen=True, eq=False)
-class JudgedMotion(Ranged):
+class JudgedMotion:
     """A motion of a task, evaluated by CVODES; each quantity is computed when it is first read.
 
     For an uncertain task residual and deflection are the largest over the scenarios; all else is of
@@ -166,7 +166,7 @@ class JudgedMotion(Ranged):
         return np.outer(self.path.arguments[-1], of_a_piece).ravel()
 
     def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """As of `Ranged`; of a quantity that the motion does not have infinite."""
+        """Least and largest value of a quantity; infinite where the motion does not have it."""
         if quantity.name == RESIDUAL:
             return -self.residual, self.residual
         if quantity not in self._known_ranges:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -31,6 +31,9 @@ from quietarm.models.joint_motion import MIXED, ROTARY
 from quietarm.models.plant_file import note_added
 from quietarm.ocp.checks import instance, not_negative, quoted, takes, words_of_error
 from quietarm.ocp.sample import Sample, symbolic_sample
+
+if TYPE_CHECKING:
+    from quietarm.ocp.figures import Figures
 
 REPORT = "report"
 NOTEBOOK = "notebook"
@@ -429,21 +432,6 @@ class TorqueSpeedLine:
         return ",".join(f"{torque:g}{unit}@{speed:g}" for torque, speed in self.points)
 
 
-class Ranged:
-    """A motion whose quantities lie in ranges, which limits are held against."""
-
-    def range_of(self, quantity: Quantity) -> tuple[float, float]:
-        """Least and largest value of a quantity: infinite where they are not known."""
-        raise NotImplementedError
-
-    def exceeded(self, limits: Iterable[Limit], tolerance: float = 0.0) -> dict[str, float]:
-        """What exceeds its limit by more than a share: its peak over the limit, by name."""
-        ratios = {
-            limit.name: limit.peak_of(self) / limit.size for limit in limits if limit.size > 0
-        }
-        return {name: ratio for name, ratio in ratios.items() if ratio > 1 + tolerance}
-
-
 @dataclass(frozen=True)
 class Limit:
     """Bounds on a quantity on the way, or on the residual after it.
@@ -533,9 +521,9 @@ class Limit:
         below, above = self.sides
         return np.maximum(least / below, largest / above)
 
-    def peak_of(self, motion: Ranged) -> float:
-        """The quantity's peak over a motion, to compare with `size`."""
-        return float(self.peak(*motion.range_of(self.quantity)))
+    def peak_of(self, figures: Figures) -> float:
+        """The quantity's peak by a motion's figures, to compare with `size`."""
+        return float(self.peak(*figures.range_of(self.quantity)))
 
     def keeps(self, peak: float, tolerance: float = 0.0, at_rest: float = 0.0) -> bool:
         """Whether a peak is within it, by a share; a residual also below what counts as rest."""

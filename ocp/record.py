@@ -22,9 +22,10 @@ from quietarm.ocp.checks import (
     quoted,
     whole,
 )
+from quietarm.ocp.rest import rest_of
 
 if TYPE_CHECKING:
-    from quietarm.ocp.figures import Figures
+    from quietarm.ocp.judged_motion import JudgedMotion
 
 Setting = str | bool | int | float | None
 
@@ -32,8 +33,6 @@ MOST_BOUND = 1e6
 """With larger coefficients the figures of a motion are rounding noise, and soon overflow."""
 AGREEMENT = 1e-3
 """Largest share by which two integrators differ in a verified figure."""
-REST = 1e-6
-"""The same of a residual [m]: below it the tip counts as at rest."""
 
 
 def versions() -> dict[str, str]:
@@ -131,6 +130,8 @@ class Verification:
         Fixed steps.
     fixed_step_energy, fixed_step_residual, energy_difference, residual_difference : float
         F2 [J] and F1 [m] by the fixed steps, and those less the independent integrator's.
+    rest : float
+        The difference of residuals [m] within which they always agree.
     """
 
     steps: CountFromOne
@@ -138,6 +139,7 @@ class Verification:
     fixed_step_residual: float
     energy_difference: float
     residual_difference: float
+    rest: float = 0.0
 
     @property
     def energy_share(self) -> float:
@@ -147,12 +149,21 @@ class Verification:
 
     @property
     def agrees(self) -> bool:
-        """Whether the values count as verified, within `AGREEMENT`, and `REST` at rest."""
+        """Whether the values count as verified: within `AGREEMENT`, or both at rest."""
         residual = abs(self.fixed_step_residual - self.residual_difference)
-        close = abs(self.residual_difference) <= AGREEMENT * residual + REST
+        close = abs(self.residual_difference) <= AGREEMENT * residual + self.rest
         return self.energy_share <= AGREEMENT and close
 
     @classmethod
-    def between(cls, steps: int, energy: float, residual: float, motion: Figures) -> Verification:
+    def between(
+        cls, steps: int, energy: float, residual: float, candidate: JudgedMotion
+    ) -> Verification:
         """Compare values by fixed steps [J, m] with those of CVODES."""
-        return cls(steps, energy, residual, energy - motion.energy, residual - motion.residual)
+        return cls(
+            steps,
+            energy,
+            residual,
+            energy - candidate.energy,
+            residual - candidate.residual,
+            rest_of(candidate.task),
+        )

@@ -6,13 +6,13 @@ The joint follows its planned path whatever the plant; energy and torque are wha
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.ocp.checks import NotNegative, takes, whole
+from quietarm.ocp.checks import takes, whole
 from quietarm.ocp.figures import ENERGY, Figures
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
@@ -75,20 +75,15 @@ def _along_errors(
     )
 
 
-@dataclass(frozen=True)
-class Worst:
-    """The worst case of a motion: the errors within a task's ranges, and F1 there [m]."""
+def worst_of(candidate: JudgedMotion) -> JudgedMotion | None:
+    """A motion along a profile with those errors within its task's ranges that leave most.
 
-    errors: Mapping[str, float] = field(hash=False)
-    residual: NotNegative
-
-
-def worst_of(candidate: JudgedMotion) -> Worst | None:
-    """The worst case of a motion along a profile; None where its task is certain."""
+    None where the task is certain.
+    """
     return next(iter(peaks_between(candidate)), None)
 
 
-def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> Worst:
+def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> JudgedMotion:
     """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
 
     def residuals(errors: Array) -> Array:
@@ -98,8 +93,10 @@ def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> Worst:
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
 
 
-def peaks_between(candidate: JudgedMotion, most: int = 4, roughly: bool = False) -> list[Worst]:
-    """Peaks of the residual within the ranges, by fixed steps, valued by CVODES; worst first.
+def peaks_between(
+    candidate: JudgedMotion, most: int = 4, roughly: bool = False
+) -> list[JudgedMotion]:
+    """The motion where its residual peaks within the ranges, found by fixed steps; worst first.
 
     On a coarser grid a narrow peak may be missed. A task that is certain has none.
     """
@@ -120,19 +117,18 @@ def _peaks(
     ranges: Mapping[str, float],
     along: int,
     most: int = 1,
-) -> list[Worst]:
+) -> list[JudgedMotion]:
     """Peaks on a grid, refined around each."""
     largest = np.array(list(ranges.values()))
     count = len(ranges)
     beside = _grid([-1.0, -0.5, 0.0, 0.5, 1.0], count)  # in steps of the grid before
 
-    def zoom(peak: Array) -> Worst:
+    def zoom(peak: Array) -> JudgedMotion:
         for finer in range(3):
             step = 2 / (along - 1) / 2**finer
             around = np.clip(peak + step * beside, -1, 1)
             peak = around[np.argmax(residuals(around * largest))]
-        errors = dict(zip(ranges, (peak * largest).tolist()))
-        return Worst(errors, candidate.perturbed(errors).residual)
+        return candidate.perturbed(dict(zip(ranges, (peak * largest).tolist())))
 
     shares = _grid(np.linspace(-1, 1, along), count)
     values = residuals(shares * largest)

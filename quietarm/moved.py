@@ -9,7 +9,11 @@ MOVED = {"figures": "quietarm.pictures", "Candidate": "quietarm.JudgedMotion"}
 """Names of `qa`."""
 MOVED_WITHIN = {
     "models": {"joint_unit": "quietarm.models.dimensions.WAY.of(kind)"},
-    "ocp": {"Motion": "quietarm.ocp.Figures", "Candidate": "quietarm.ocp.JudgedMotion"},
+    "ocp": {
+        "Motion": "quietarm.ocp.Figures",
+        "Candidate": "quietarm.ocp.JudgedMotion",
+        "Worst": "quietarm.ocp.JudgedMotion, which has errors and residual",
+    },
     "pictures": {"QUANTITIES_DRAWN": "quietarm.pictures.drawn_quantities()"},
     "compare": {"JudgedMotion": "quietarm.compare.ComparedMotion"},
     "studies": {

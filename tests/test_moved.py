@@ -26,6 +26,7 @@ def test_a_class_that_has_another_name_says_it():
         ("pictures", "QUANTITIES_DRAWN", "pictures.drawn_quantities"),
         ("studies", "export", "views"),
         ("ocp", "Candidate", "ocp.JudgedMotion"),
+        ("ocp", "Worst", "ocp.JudgedMotion"),
         ("compare", "JudgedMotion", "compare.ComparedMotion"),
         ("studies", "identify", "machine.identify"),
     ],

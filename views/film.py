@@ -263,7 +263,7 @@ def _title(structure: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan = structure.line.plan
     task = structure.line.plan.task
-    residual = residual_words(plan.residual, task.plant.tip_unit)
+    residual = residual_words(plan.residual, task)
     residual = "at rest" if residual == "rest" else residual
     lines = [
         f"{structure.line.label}, {structure.scale_words}",

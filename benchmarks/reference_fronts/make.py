@@ -92,7 +92,7 @@ def _keeps_limits(front: Front, point: FrontPoint) -> bool:
     if not front.task.limits:
         return True
     candidate = JudgedMotion.of_profile(front.task.certain, front.profile, point.coefficients)
-    return not candidate.exceeded(front.task.limits, _BETTER)
+    return not candidate.figures.exceeded(front.task.limits, _BETTER)
 
 
 def _better(

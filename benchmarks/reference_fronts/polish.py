@@ -22,10 +22,11 @@ from quietarm.metaheuristics.problems.catalogue import FRONTS
 from quietarm.ocp import Front, FrontPoint, JudgedMotion, QuietarmError, non_dominated
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.planning.best_of_starts import best_of_starts
-from quietarm.ocp.planning.certify import Certified, Tolerances, certify
+from quietarm.ocp.planning.certify import Certified, certify
 from quietarm.ocp.record import versions
+from quietarm.ocp.rest import STILL
 from quietarm.ocp.simulation.free_vibration import after_arrival
-from quietarm.ocp.solvers.problem import STILL, Program
+from quietarm.ocp.solvers.problem import Program
 from quietarm.ocp.solvers.sqp import Sqp
 
 STEPS = 500
@@ -103,7 +104,8 @@ def _solved_from_neighbours(
         [problems[place] for place in solved],
         [solutions[place] for place in solved],
         Sqp(),
-        Tolerances(_AGREEMENT, STEPS),
+        agreement=_AGREEMENT,
+        most_steps=STEPS,
     )
     found = dict[int, FrontPoint]()
     for place, outcome in zip(solved, outcomes):
@@ -124,7 +126,7 @@ def _judged(program: Program, outcome: Certified) -> FrontPoint | None:
     except QuietarmError:
         return None
     nominal = JudgedMotion.of_profile(task.certain, program.profile, coefficients)
-    if nominal.exceeded(task.limits, BETTER):
+    if nominal.figures.exceeded(task.limits, BETTER):
         return None
     return FrontPoint(coefficients, *figures)
 

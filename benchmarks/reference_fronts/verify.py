@@ -135,7 +135,7 @@ def _motion_of(rival: Rival, point: FrontPoint, start: Array) -> FrontPoint | No
             return None
         if figures[0] > max(point.residual * (1 + _KEPT), _STILL):
             return None
-        exceeded = motion.exceeded(task.limits, _KEPT) if task.limits else {}
+        exceeded = motion.figures.exceeded(task.limits, _KEPT) if task.limits else {}
         if not exceeded:
             return FrontPoint(coefficients, *figures)
         room += max(exceeded.values()) - 1

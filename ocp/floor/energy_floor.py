@@ -20,9 +20,10 @@ from quietarm.ocp.floor.program import FloorProgram, FreeSolution, finer, first_
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import Limit
 from quietarm.ocp.motion_answer import MotionAnswer
-from quietarm.ocp.planning.best_of_starts import SAME, Sought, least_peaks, true_peaks, unmet
+from quietarm.ocp.planning.best_of_starts import SAME
 from quietarm.ocp.planning.certify import excess_error, tighten
 from quietarm.ocp.planning.plan_move import plan_move
+from quietarm.ocp.planning.remedies import least_peaks, true_peaks, unmet
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointPath
@@ -103,7 +104,7 @@ class Floor(MotionAnswer):
     @cached_property
     def verification(self) -> Verification:
         """Distance of the solver's figures, on its intervals, from those by CVODES."""
-        return Verification.between(self.free.steps, self.solver_energy, 0.0, self.motion)
+        return Verification.between(self.free.steps, self.solver_energy, 0.0, self.candidate)
 
     @property
     def smooth(self) -> bool:
@@ -286,12 +287,15 @@ def _solve_from_starts(program: FloorProgram, paths: Iterable[JointPath]) -> lis
     if solved:
         return solved
     peaks = true_peaks(limits, least, lambda solution: _by_cvodes(program, solution))
-    sought = Sought(
-        "motion at all",
-        "a longer duration",
+    raise unmet(
+        program.task,
+        limits,
+        tried,
+        peaks,
+        motion="motion at all",
+        remedy="a longer duration",
         otherwise="try another seed, more starts or a longer duration.",
     )
-    raise unmet(sought, limits, tried, peaks)
 
 
 def _solved(solutions: Iterable[FreeSolution]) -> list[FreeSolution]:
@@ -371,16 +375,16 @@ def _certify(
     tightened = limits
     candidate = _by_cvodes(program, solution)
     for _ in range(rounds):
-        if not candidate.exceeded(limits, tolerated):
+        if not candidate.figures.exceeded(limits, tolerated):
             break
-        tightened = tighten(tightened, candidate, limits)
+        tightened = tighten(tightened, candidate.figures, limits)
         following = program.solve(solution.free, tightened, warm=True)
         if not following.status.solved:
             break
         solution = following
         candidate = _by_cvodes(program, solution)
     remedy = "the grid is too coarse for this motion; give a smaller energy tolerance"
-    error = excess_error(candidate, limits, remedy)
+    error = excess_error(candidate.figures, limits, remedy)
     if error is not None:
         raise error
     return solution, candidate

@@ -141,7 +141,7 @@ def _limits_at_nodes(
     at_nodes = problem.measure(problem.evaluate(coefficients))
     peaks = at_nodes.peaks_of(0)
     for limit in problem.task.limits:
-        if limit.keeps(limit.peak_of(motion), -OVERRUN):
+        if limit.keeps(limit.peak_of(motion.figures), -OVERRUN):
             yield limit
         else:
             yield limit.tightened(limit.size / peaks[limit.name])

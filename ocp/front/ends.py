@@ -7,20 +7,20 @@ from typing import NamedTuple
 
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY
-from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Tradeoff
+from quietarm.ocp.front.tradeoff import BETWEEN_ENDS, RESIDUAL_LIMIT, Certificate, Tradeoff
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
     best_of_starts,
-    least_peaks_of,
     solve_from_starts,
 )
-from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify_one
+from quietarm.ocp.planning.certify import Certified, certify_one
+from quietarm.ocp.planning.remedies import least_peaks_of
+from quietarm.ocp.rest import still_of
 from quietarm.ocp.solvers.problem import (
     LEAST_ENERGY,
     Program,
     Solution,
-    still_of,
 )
 
 
@@ -86,7 +86,7 @@ def _at_rest(tradeoff: Tradeoff) -> _Still | None:
     try:
         problem = tradeoff.problem(0.0)
         first, _ = solve_from_starts(problem, tradeoff.starts, solver)
-        rough = certify_one(problem, first, solver, Tolerances(tradeoff.tolerances.energy))
+        rough = certify_one(problem, first, solver, agreement=BETWEEN_ENDS)
         tradeoff = replace(tradeoff, program=rough.problem)
         end = certify_one(tradeoff.problem(0.0), rough.solution, solver)
     except SolverFailedError:
@@ -106,16 +106,11 @@ def _least_residual(tradeoff: Tradeoff, cheapest: Solution) -> _Still:
         return _Still(tradeoff, cheapest, _certify_cheapest(tradeoff, cheapest))
     limits = tradeoff.problem().limits
     try:
-        reached = certify_one(
-            tradeoff.problem(minimise={RESIDUAL: 1.0}),
-            least,
-            solver,
-            limits=limits,
-        )
+        reached = certify_one(tradeoff.problem(minimise={RESIDUAL: 1.0}), least, solver, limits)
         problem = _cheapest_of_residual(reached)
         (solution,) = solver.solve([problem], [reached.solution.coefficients], warm=True)
         still = solution if solution.status.solved else reached.solution
-        end = certify_one(problem, still, solver, OF_A_PLAN, limits)
+        end = certify_one(problem, still, solver, limits)
     except SolverFailedError:
         (failed,) = tradeoff.certify([(least, {RESIDUAL_LIMIT: least.residual})])
         return _Still(tradeoff, least, failed)

@@ -21,7 +21,8 @@ from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import digits, number_of_points
-from quietarm.ocp.solvers.problem import STILL, Solution
+from quietarm.ocp.rest import STILL
+from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint

@@ -45,7 +45,8 @@ from quietarm.ocp.objectives import (
 )
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.record import REST, Record, Setting
+from quietarm.ocp.record import Record, Setting
+from quietarm.ocp.rest import is_at_rest
 from quietarm.ocp.saved import Answer, to_html
 from quietarm.ocp.task import PointToPoint
 
@@ -201,7 +202,7 @@ class Front(Answer):
         )
         rows = [
             (
-                f"{point.residual:.3g}" if point.residual > REST else "0",
+                "0" if is_at_rest(point.residual, self.task) else f"{point.residual:.3g}",
                 f"{point.energy:.5g}",
                 *(f"{point.peaks[objective.quantity]:.4g}" for objective in self._peaks),
                 *(f"{column[i]:.{figure.digits}g}" for figure, column in zip(added, values)),

@@ -275,7 +275,7 @@ def evaluated(
         except SolverFailedError:
             failed += 1
             continue
-        if motion.exceeded(task.limits, at_limit):
+        if motion.figures.exceeded(task.limits, at_limit):
             infeasible += 1
         else:
             points.append(point)

@@ -31,10 +31,10 @@ from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.record import Setting, digits
+from quietarm.ocp.rest import still_of
 from quietarm.ocp.solvers.problem import (
     Program,
     Solution,
-    still_of,
 )
 
 Array = NDArray[np.float64]

@@ -15,11 +15,11 @@ from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated, po
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities, with_peaks_measured
-from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, Tolerances, certify
+from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, certify
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.record import Setting
-from quietarm.ocp.solvers.problem import LEAST_ENERGY, Program, Solution
+from quietarm.ocp.solvers.problem import LEAST_ENERGY, MOST_SOLVER_STEPS, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 """Called with the number of points done and of all."""
 RESIDUAL_LIMIT = "residual_limit"
+BETWEEN_ENDS = 1e-4
+"""Share by which energies of points between the ends may differ: looser than a plan's."""
 
 
 def no_report(done: int, total: int) -> None:
@@ -116,9 +118,9 @@ class Tradeoff:
         return self.request.guesses
 
     @property
-    def tolerances(self) -> Tolerances:
-        """Tolerances of points between the ends: looser than a plan's; steps are doubled once."""
-        return Tolerances(energy=1e-4, most_steps=2 * self.program.steps)
+    def most_steps(self) -> int:
+        """Steps that points between the ends may take: they are doubled once."""
+        return 2 * self.program.steps
 
     def problem(
         self,
@@ -164,8 +166,9 @@ class Tradeoff:
             problems,
             solved,
             self.solver,
-            OF_A_PLAN if free else self.tolerances,
             (Limit.of_residual(most_residual, self.task.plant.tip_unit), *self.task.limits),
+            agreement=OF_A_PLAN if free else BETWEEN_ENDS,
+            most_steps=MOST_SOLVER_STEPS if free else self.most_steps,
         )
         remaining = iter(outcomes)
         certificates: list[Certificate] = []
@@ -190,8 +193,9 @@ class Tradeoff:
             problems,
             solutions,
             self.solver,
-            self.tolerances,
             limits or (Limit.of_residual(np.inf, tip_unit), *self.task.limits),
+            agreement=BETWEEN_ENDS,
+            most_steps=self.most_steps,
         )
         return [
             self.certificate_of(outcome) if isinstance(outcome, Certified) else outcome
@@ -204,8 +208,8 @@ class Tradeoff:
         profile = self.program.profile
         coefficients = profile.checked(solution.coefficients)
         if self.objectives == RESIDUAL_AND_ENERGY:
-            checked = certified.checked
-            point = FrontPoint(coefficients, checked.residual, checked.energy)
+            figures = certified.figures
+            point = FrontPoint(coefficients, figures.residual, figures.energy)
         else:
             motion = JudgedMotion.of_profile(self.task, profile, coefficients)
             point = point_of(motion, self.objectives)

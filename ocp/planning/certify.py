@@ -16,18 +16,17 @@ from numpy.typing import NDArray
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY, Figures
 from quietarm.ocp.judged_motion import JudgedMotion
-from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity, Ranged
+from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity
 from quietarm.ocp.profiles.check_profile import check_motion
+from quietarm.ocp.rest import still_of
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.problem import (
     MOST_SOLVER_STEPS,
-    STILL_SHARE,
     Program,
     Solution,
     evaluate,
     programs_of,
-    still_of,
 )
 from quietarm.ocp.solvers.solver import Solver
 
@@ -41,33 +40,21 @@ _EVERY = 10
 """CVODES checks one motion in so many of those that finer steps judge."""
 
 
-@dataclass(frozen=True)
-class Tolerances:
-    """Share by which the energies of solver and integrator may differ; most steps of the solver."""
-
-    energy: float = 1e-5
-    most_steps: int = MOST_SOLVER_STEPS
-
-
-OF_A_PLAN = Tolerances()
-"""The solver's cheapest motion is then the independent integrator's within 1e-6, in all but one of
-56 plans tried (6e-6)."""
-
-
-Judgement = JudgedMotion | Figures
-"""What another integrator says of a motion: CVODES; or by finer steps energy, residual and
-`arrival`, the state of shape (1, 2 * modes)."""
+OF_A_PLAN = 1e-5
+"""Share by which the energies of solver and integrator may differ. The solver's cheapest motion is
+then the independent integrator's within 1e-6, in all but one of 56 plans tried (6e-6)."""
 
 
 @dataclass(frozen=True)
 class Certified:
     """A solution with what another integrator says, and the problem, tightened, that it solves.
 
-    `by_cvodes` is true if CVODES computed or confirmed the figures.
+    The figures are those of a motion that CVODES judges; by finer steps there are F1 and F2.
+    `by_cvodes` is true if CVODES computed or confirmed them.
     """
 
     solution: Solution
-    checked: Judgement
+    figures: Figures
     problem: Program
     by_cvodes: bool
 
@@ -79,36 +66,36 @@ class Certified:
     @property
     def energy(self) -> float:
         """F2 [J] by the other integrator."""
-        return self.checked.energy
+        return self.figures.energy
 
     def keeps(self, limits: Sequence[Limit], still: float) -> bool:
         """Whether no limit is passed; a residual up to `still` [m] counts as rest."""
-        return all(limit.keeps(limit.peak_of(self.checked), 0.0, still) for limit in limits)
-
-
-Outcome = Certified | SolverFailedError
+        return all(limit.keeps(limit.peak_of(self.figures), 0.0, still) for limit in limits)
 
 
 def certify(
     problems: Sequence[Program],
     solutions: Sequence[Solution],
     solver: Solver,
-    tolerances: Tolerances = OF_A_PLAN,
     limits: Sequence[Limit] | None = None,
-) -> list[Outcome]:
+    *,
+    agreement: float = OF_A_PLAN,
+    most_steps: int = MOST_SOLVER_STEPS,
+) -> list[Certified | SolverFailedError]:
     """Compare with CVODES; correct arrivals, double the steps, tighten what is exceeded.
 
     The solver's few steps miss the state on arrival by a little; limits hold at its nodes only, and
     the residual limit at its samples. The differences that the independent integrator finds are
     given to the solver, which goes on from where it stopped. The problems are of one plant and
-    profile; what has to hold by CVODES are their own limits by default. An error stands for a
+    profile; what has to hold by CVODES are their own limits by default. The energies of solver and
+    integrator agree to a share, on at most so many of the solver's steps. An error stands for a
     motion that exceeds a limit all the same.
     """
 
     def rows_of(numbers: Iterable[int]) -> list[_Row]:
-        return [_Row(problems[i], solutions[i], tolerances, limits) for i in numbers]
+        return [_Row(problems[i], solutions[i], limits, agreement, most_steps) for i in numbers]
 
-    outcomes: dict[int, Outcome] = {}
+    outcomes: dict[int, Certified | SolverFailedError] = {}
     without_limits = [i for i, problem in enumerate(problems) if _is_without_limits(problem)]
     if len(without_limits) >= _EVERY:
         settled = _settle(rows_of(without_limits), solver, _judge_by_finer_steps)
@@ -128,11 +115,15 @@ def certify_one(
     problem: Program,
     solution: Solution,
     solver: Solver,
-    tolerances: Tolerances = OF_A_PLAN,
     limits: Sequence[Limit] | None = None,
+    *,
+    agreement: float = OF_A_PLAN,
+    most_steps: int = MOST_SOLVER_STEPS,
 ) -> Certified:
     """The same of one solution; its error is raised."""
-    (outcome,) = certify([problem], [solution], solver, tolerances, limits)
+    (outcome,) = certify(
+        [problem], [solution], solver, limits, agreement=agreement, most_steps=most_steps
+    )
     if isinstance(outcome, SolverFailedError):
         raise outcome
     return outcome
@@ -145,30 +136,34 @@ class _Row:
         self,
         problem: Program,
         solution: Solution,
-        tolerances: Tolerances,
         limits: Sequence[Limit] | None,
+        agreement: float,
+        most_steps: int,
     ) -> None:
         self.problem = problem
         self.solution = solution
-        self.tolerances = tolerances
+        self.agreement = max(agreement, problem.profile.energy_agreement)
+        self.most_steps = most_steps
         self.asked = problem
         self.tightened = problem.limits
         self.limits = problem.limits if limits is None else limits
-        still_share = STILL_SHARE * problem.plain_residual
-        self.still = max(still_of(problem.task), still_share)
+        # a share of what the plain motion leaves counts as none as well
+        self.still = max(still_of(problem.task), 1e-7 * problem.plain_residual)
         self.tried: list[Certified] = []
+        self.arrival: Array = np.empty(0)
         self.failure: SolverFailedError | None = None
 
     @property
-    def judgement(self) -> Judgement:
-        """Of the last motion."""
-        return self.tried[-1].checked
+    def figures(self) -> Figures:
+        """Of the last motion, by another integrator."""
+        return self.tried[-1].figures
 
-    def note(self, judgement: Judgement) -> None:
-        """Note what another integrator says of the last solution."""
-        by_cvodes = isinstance(judgement, JudgedMotion)
-        self.tried.append(Certified(self.solution, judgement, self.problem, by_cvodes))
-        self.tightened = tighten(self.tightened, judgement, self.limits)
+    def note(self, figures: Figures, arrival: Array) -> None:
+        """Note what another integrator says of the last solution, and its states on arrival."""
+        by_cvodes = figures.candidate is not None
+        self.tried.append(Certified(self.solution, figures, self.problem, by_cvodes))
+        self.arrival = arrival
+        self.tightened = tighten(self.tightened, figures, self.limits)
 
     def go_on_from(self, solution: Solution, problem: Program) -> None:
         """Take another solution, whose iterations count as well."""
@@ -179,9 +174,8 @@ class _Row:
     @property
     def is_rough(self) -> bool:
         """Whether the solver's steps are too few for the energy."""
-        energy = self.judgement.energy
-        share = max(self.tolerances.energy, self.problem.profile.energy_agreement)
-        return abs(self.solution.energy - energy) > share * energy
+        energy = self.figures.energy
+        return abs(self.solution.energy - energy) > self.agreement * energy
 
     @property
     def differs(self) -> bool:
@@ -190,10 +184,10 @@ class _Row:
         They may differ by a share of rest, or of the limit.
         """
         tolerated = max(0.3 * self.still, 5e-3 * self.asked.residual_limit)
-        difference = abs(self.solution.residual - self.judgement.residual)
-        return difference > tolerated or bool(self.judgement.exceeded(self.limits))
+        difference = abs(self.solution.residual - self.figures.residual)
+        return difference > tolerated or bool(self.figures.exceeded(self.limits))
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> Certified | SolverFailedError:
         """The cheapest of the motions that keep every limit; else the last, or what it exceeds."""
         if self.failure is not None:
             return self.failure
@@ -206,15 +200,15 @@ class _Row:
             "the solver's steps are too coarse for this motion; bound the coefficients, use fewer "
             "terms, or give a longer duration"
         )
-        return excess_error(self.judgement, self.limits, remedy, self.still) or self.tried[-1]
-
-
-JudgeAll = Callable[[Sequence[_Row]], None]
+        return excess_error(self.figures, self.limits, remedy, self.still) or self.tried[-1]
 
 
 def _settle(
-    rows: Sequence[_Row], solver: Solver, judge_all: JudgeAll, rounds: int = 12
-) -> list[Outcome]:
+    rows: Sequence[_Row],
+    solver: Solver,
+    judge_all: Callable[[Sequence[_Row]], None],
+    rounds: int = 12,
+) -> list[Certified | SolverFailedError]:
     """At most `rounds` times: correct or refine what differs, until nothing does.
 
     It ends as well where no row was solved again.
@@ -241,7 +235,7 @@ def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
         by_steps = evaluate([row.problem for row in alike], _table(alike))
         problems = []
         for row, motion in zip(alike, by_steps):
-            missed = row.judgement.arrival - motion.arrival
+            missed = row.arrival - motion.arrival
             problems.append(row.problem.asking(limits=row.tightened, offset=missed))
         solved += _solve_again(alike, problems, solver)
     return solved
@@ -250,7 +244,7 @@ def _correct(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
 def _refine(rows: Sequence[_Row], solver: Solver) -> list[_Row]:
     """Solve rows on twice the steps, if they may have as many."""
     solved: list[_Row] = []
-    refinable = [row for row in rows if 2 * row.problem.steps <= row.tolerances.most_steps]
+    refinable = [row for row in rows if 2 * row.problem.steps <= row.most_steps]
     for alike in _alike(refinable):
         coarse = alike[0].problem
         tasks = [row.problem.task for row in alike]
@@ -284,7 +278,7 @@ def _judge_by_cvodes(rows: Sequence[_Row]) -> None:
         except SolverFailedError as error:
             row.failure = error
         else:
-            row.note(candidate)
+            row.note(candidate.figures, candidate.arrival)
 
 
 def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
@@ -296,12 +290,13 @@ def _judge_by_finer_steps(rows: Sequence[_Row]) -> None:
             figures = {
                 ENERGY: float(evaluation.energy[i, 0]),
                 RESIDUAL: float(evaluation.residual[i, 0]),
-                "arrival": evaluation.arrival[i],
             }
-            row.note(Figures(figures))
+            row.note(Figures(figures), evaluation.arrival[i])
 
 
-def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[Outcome]:
+def _confirm(
+    outcomes: Sequence[Certified | SolverFailedError], agreement: float = 1e-6
+) -> Sequence[Certified | SolverFailedError]:
     """Figures by finer steps with CVODES' word at every tenth; none where that is another.
 
     The two may differ by a share, the `agreement`.
@@ -311,7 +306,7 @@ def _confirm(outcomes: Sequence[Outcome], agreement: float = 1e-6) -> Sequence[O
         outcome = outcomes[i]
         if isinstance(outcome, SolverFailedError):
             continue
-        figures = outcome.checked
+        figures = outcome.figures
         exact = by_cvodes(outcome.problem, outcome.solution.coefficients)
         energy_differs = abs(exact.energy - figures.energy) > agreement * exact.energy
         tolerated = agreement * exact.residual + still_of(exact.task)
@@ -359,9 +354,11 @@ def by_cvodes(problem: Program, coefficients: Array) -> JudgedMotion:
     return JudgedMotion.of_profile(problem.task, problem.profile, coefficients)
 
 
-def tighten(limits: Sequence[Limit], motion: Ranged, to_keep: Sequence[Limit]) -> tuple[Limit, ...]:
+def tighten(
+    limits: Sequence[Limit], verified: Figures, to_keep: Sequence[Limit]
+) -> tuple[Limit, ...]:
     """The limits to give the solver, each less by as much as the verified motion exceeds it."""
-    exceeded = motion.exceeded(to_keep)
+    exceeded = verified.exceeded(to_keep)
     return tuple(
         limit.tightened(_BELOW * exceeded[limit.name]) if limit.name in exceeded else limit
         for limit in limits
@@ -369,11 +366,11 @@ def tighten(limits: Sequence[Limit], motion: Ranged, to_keep: Sequence[Limit]) -
 
 
 def excess_error(
-    motion: Ranged, limits: Sequence[Limit], remedy: str, still: float = 0.0
+    verified: Figures, limits: Sequence[Limit], remedy: str, still: float = 0.0
 ) -> SolverFailedError | None:
     """What to say of a verified motion that exceeds a limit although limits were tightened."""
     for limit in limits:
-        peak = limit.peak_of(motion)
+        peak = limit.peak_of(verified)
         if not limit.keeps(peak, OVERRUN, still):
             return SolverFailedError(
                 f"the verified {limit.label} is {limit.describe(peak)}, above its limit of "

@@ -20,10 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.planning.best_of_starts import best_of_starts, has_a_plan
+from quietarm.ocp.planning.best_of_starts import best_of_starts
 from quietarm.ocp.planning.least_time import fitting_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.remedies import has_a_plan
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial

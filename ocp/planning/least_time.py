@@ -266,7 +266,7 @@ class _Durations:
 
     def widen_margins(self, least: LeastTime) -> bool:
         """Whether a motion passes limits by more than their margins, which are wider then."""
-        exceeded = self._motion(least).exceeded(self._task.limits)
+        exceeded = self._motion(least).figures.exceeded(self._task.limits)
         for name, ratio in exceeded.items():
             self._margins[name] += self.room * (ratio - 1)
         self._shortest = None

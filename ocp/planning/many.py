@@ -13,7 +13,6 @@ from quietarm.models import Plant
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
-from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
 from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
@@ -250,17 +249,17 @@ class _MovesTable:
 
     def _note(self, i: int, certified: Certified) -> None:
         """The values of a move; its peaks only if it was judged by CVODES alone."""
-        judgement = certified.checked
+        figures = certified.figures
         self._solutions[i] = certified.solution
         self._coefficients[i] = certified.solution.coefficients
-        self._energy[i] = judgement.energy
-        self._residual[i] = judgement.residual
+        self._energy[i] = figures.energy
+        self._residual[i] = figures.residual
         self._by_cvodes[i] = certified.by_cvodes
-        if not isinstance(judgement, JudgedMotion):
+        if figures.candidate is None:
             self._by_finer_steps.append(i)
             return
         for name, values in self._peaks.items():
-            values[i] = judgement.motion.peak(name)
+            values[i] = figures.peak(name)
 
     def _add_finer_peaks(self) -> None:
         """The peaks of moves that finer steps judged, all at once."""

@@ -27,12 +27,13 @@ from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
-from quietarm.ocp.record import REST, Record, Setting, Verification
-from quietarm.ocp.robustness import Sensitivity, Worst, peaks_between, sensitivities
+from quietarm.ocp.record import Record, Setting, Verification
+from quietarm.ocp.rest import is_at_rest, still_of
+from quietarm.ocp.robustness import Sensitivity, peaks_between, sensitivities
 from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
-from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, still_of
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.ocp.task import PointToPoint
 
 _MOST_ROWS = 500_000
@@ -107,15 +108,15 @@ class Plan(MotionAnswer):
         return JudgedMotion.of_profile(self.task, self.profile, self.coefficients)
 
     @cached_property
-    def peaks(self) -> tuple[Worst, ...]:
-        """Peaks of the residual within the ranges of an uncertain task; the worst first."""
+    def peaks(self) -> tuple[JudgedMotion, ...]:
+        """The motion where its residual peaks within the ranges of its task; the worst first."""
         return tuple(peaks_between(self.candidate))
 
     @property
-    def worst(self) -> Worst | None:
-        """The worst case of an uncertain task; None if the task is certain.
+    def worst(self) -> JudgedMotion | None:
+        """The motion in the worst case of an uncertain task; None if the task is certain.
 
-        These are the errors within its ranges with the largest residual, also between the
+        Its `errors` are those within the ranges with the largest residual, also between the
         scenarios.
         """
         return self.peaks[0] if self.peaks else None
@@ -150,7 +151,7 @@ class Plan(MotionAnswer):
         evaluation = evaluator([self.coefficients])
         energy = float(evaluation.energy[0, 0])
         residual = float(evaluation.residual.max())
-        return Verification.between(steps, energy, residual, self.motion)
+        return Verification.between(steps, energy, residual, self.candidate)
 
     def on(self, task: PointToPoint) -> Plan:
         """The same motion for an uncertain task with the same nominal plant."""
@@ -190,7 +191,7 @@ class Plan(MotionAnswer):
         task = self.task
         motion = self.motion
         residual = "at rest"
-        if motion.residual > REST * task.smallness:
+        if not is_at_rest(motion.residual, task):
             residual = f"{motion.residual:.3g} {task.plant.tip_unit}"
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         peaks = {

@@ -29,8 +29,8 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
-from quietarm.ocp.record import REST
-from quietarm.ocp.robustness import Worst, peaks_between
+from quietarm.ocp.rest import rest_of
+from quietarm.ocp.robustness import peaks_between
 from quietarm.ocp.solvers.problem import Program, Solution
 
 EXCESS = 0.05
@@ -87,7 +87,7 @@ def _adapt_limit(request: Request) -> Plan:
         nominal_worst = nominal.worst.residual
         # of many random starts, as networks take them, those stand for the others that led there
         starts = [*motions, *starts[: max(request.starts, _NOMINAL_STARTS - len(motions))]]
-    most = max(nominal_worst, REST * request.task.smallness)
+    most = max(nominal_worst, rest_of(request.task))
     limit = min(request.residual_limit, most)
     try:
         plan = _hold(request.within(limit), starts, gives_up=True)
@@ -138,7 +138,7 @@ class _Solved(NamedTuple):
     seconds: float
 
     @property
-    def peaks(self) -> list[Worst]:
+    def peaks(self) -> list[JudgedMotion]:
         """Peaks of the best motion's residual between the scenarios, before it is certified."""
         return peaks_between(by_cvodes(self.problem, self.best.coefficients), roughly=True)
 
@@ -282,10 +282,11 @@ def _certified_plan(request: Request, solved: _Solved) -> Plan:
     """The plan of a solution, judged by CVODES."""
     began = time.perf_counter() - solved.seconds
     certified = certify_one(solved.problem, solved.best, request.solver)
-    assert isinstance(certified.checked, JudgedMotion)  # a single motion is judged by CVODES
+    candidate = certified.figures.candidate
+    assert candidate is not None  # a single motion is judged by CVODES
     solution = certified.solution
     return Plan.of_candidate(
-        certified.checked,
+        candidate,
         status=solution.status,
         record=request.record(
             request.solver.name, solution.iterations, time.perf_counter() - began

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from quietarm.ocp.checks import count_of, takes
 from quietarm.ocp.errors import InfeasibleTaskError
-from quietarm.ocp.planning.best_of_starts import offers_for
 from quietarm.ocp.planning.choose_profile import choose_profile, plan_on_chosen_profile
 from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.remedies import offers_for
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial

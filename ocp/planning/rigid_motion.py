@@ -260,7 +260,7 @@ def _of_a_cycloid(task: PointToPoint) -> float:
         cycloid = CycloidPolynomial(0)
         try:
             motion = JudgedMotion.of_profile(replace(task.certain, duration=duration), cycloid, [])
-            return not motion.exceeded(task.limits)
+            return not motion.figures.exceeded(task.limits)
         except SolverFailedError:
             return False
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from quietarm.ocp.robustness import Worst
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.task import PointToPoint
 
 _AT_CORNER = 1e-6
@@ -14,7 +14,7 @@ _AT_CORNER = 1e-6
 
 
 def new_scenarios(
-    task: PointToPoint, peaks: Sequence[Worst], same: float = 1e-6
+    task: PointToPoint, peaks: Sequence[JudgedMotion], same: float = 1e-6
 ) -> list[list[float]]:
     """The errors of those peaks that are no scenario of the task yet.
 

@@ -23,17 +23,6 @@ from quietarm.ocp.task import PointToPoint
 Array = NDArray[np.float64]
 MOST_SOLVER_STEPS = 3200
 """The solver's steps are doubled up to this many."""
-STILL = 1e-8
-STILL_SHARE = 1e-7
-"""A motion counts as at rest on arrival up to this verified residual: in metres, or as a share of
-the plain cycloid's residual, whichever is larger."""
-
-
-def still_of(task: PointToPoint) -> float:
-    """What counts as rest on arrival [m]: `STILL`, and less for a small move."""
-    return STILL * task.smallness
-
-
 LEAST_ENERGY = {ENERGY: 1.0}
 T = TypeVar("T")
 

@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.evaluation.population import UNUSABLE
-from quietarm.metaheuristics.evaluation.stated_figures import agrees
-from quietarm.models import Plant
+from quietarm.metaheuristics.evaluation.stated_figures import agrees, always_agrees_within
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
 from quietarm.ocp.checks import whole
 from quietarm.ocp.figures import FIGURES
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.plan import evaluate_coefficients
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import rest_of
 from quietarm.ocp.window import DefaultWindow
 from quietarm.studies.answers.foreign import Found, read_found
 
@@ -30,7 +29,7 @@ _JUDGED = 100
 """Motions that CVODES judges at most, of those whose stated figures differ from fixed steps."""
 _NEAR = 1e-3
 """Motions that another beats by more than this share are not evaluated a second time; where
-residuals are near rest, and a share says little, by `REST` as well."""
+residuals are near rest, and a share says little, by `rest_of` the task as well."""
 
 
 def import_front(
@@ -88,7 +87,7 @@ def _evaluated(
     failed = np.asarray((objectives >= UNUSABLE).any(axis=1))
     broken = ~failed & (violations > _NEAR).any(axis=1)
     usable = np.flatnonzero(~failed & ~broken)
-    near = usable[_not_beaten(objectives[usable])]
+    near = usable[_not_beaten(objectives[usable], task)]
     if not near.size:
         raise SolverFailedError(_why_none(rows, failed, violations, task))
     front = Front.from_coefficients(
@@ -109,7 +108,7 @@ def _evaluated(
         plan = evaluate_coefficients(task, rows[row], profile=profile)
         return plan.residual, plan.energy
 
-    return front, _claims(imported.claims, objectives[:, :2], judge, task.plant)
+    return front, _claims(imported.claims, objectives[:, :2], judge, task)
 
 
 def _checked(
@@ -138,7 +137,7 @@ def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: P
     )
 
 
-def _not_beaten(F: Array) -> NDArray[np.bool_]:
+def _not_beaten(F: Array, task: PointToPoint) -> NDArray[np.bool_]:
     """Rows that no other is clearly better than."""
     import moocore  # not at the top: it takes long to load
 
@@ -147,37 +146,37 @@ def _not_beaten(F: Array) -> NDArray[np.bool_]:
     if F.shape[1] > len(RESIDUAL_AND_ENERGY):  # peaks at the nodes say little of near ones
         return np.asarray(moocore.is_nondominated(F, keep_weakly=True))
     best = F[moocore.is_nondominated(F)]
-    best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([REST, 0.0])
+    best = best[np.argsort(best[:, 0])] * (1 + _NEAR) + np.array([rest_of(task), 0.0])
     # energies fall along the front: the last point within a residual has the least
     last = np.searchsorted(best[:, 0], F[:, 0], side="right") - 1
     return (last < 0) | (F[:, 1] < best[np.maximum(last, 0), 1])
 
 
 def _claims(
-    stated: Array, figures: Array, judge: Callable[[int], tuple[float, float]], plant: Plant
+    stated: Array, figures: Array, judge: Callable[[int], tuple[float, float]], task: PointToPoint
 ) -> list[str]:
     """How what a file states compares; where fixed steps differ from it, CVODES has the word."""
     objectives = [FIGURES[name] for name in RESIDUAL_AND_ENERGY]
-    least = np.array([figure.agreement for figure in objectives])
+    least = np.array([always_agrees_within(figure.name, task) for figure in objectives])
     differ = (~np.isnan(stated) & ~agrees(stated, figures, least)).any(axis=1)
     figures = figures.copy()
     for row in np.flatnonzero(differ)[:_JUDGED].tolist():
         figures[row] = judge(row)
     notes = list[str]()
-    for theirs, ours, objective in zip(stated.T, figures.T, objectives):
+    for theirs, ours, objective, tolerated in zip(stated.T, figures.T, objectives, least):
         figure = objective.name
-        unit = objective.unit_on(plant)
+        unit = objective.unit_on(task.plant)
         known = ~np.isnan(theirs)
-        wrong = known & ~agrees(theirs, ours, objective.agreement)
+        wrong = known & ~agrees(theirs, ours, tolerated)
         if not known.any():
             continue
         if not wrong.any():
             motions = "its motion" if known.sum() == 1 else f"all {known.sum()} motions"
             notes.append(f"the file's {figure} is right for {motions}")
             continue
-        gaps = (np.abs(theirs - ours) - objective.agreement) / np.maximum(np.abs(ours), 1e-300)
+        gaps = (np.abs(theirs - ours) - tolerated) / np.maximum(np.abs(ours), 1e-300)
         worst = int(np.argmax(np.where(wrong, gaps, -1.0)))
-        telling = known & (ours > 100 * REST)
+        telling = known & (ours > 100 * rest_of(task))
         hint = ""
         if telling.any() and abs(np.median(theirs[telling] / ours[telling]) / 1000 - 1) < 0.05:
             hint = f"; is it in m{unit}? name the column {figure}_m{unit}"

@@ -14,7 +14,6 @@ from quietarm.ocp import (
     PointToPoint,
     Robustness,
     Uncertainty,
-    Worst,
     evaluate_robustness,
     task_difference,
 )
@@ -39,8 +38,8 @@ class ComparedMotion:
         Residual, energy and peaks on the nominal plant.
     window : float or None
         Time after arrival in which residuals are measured [s].
-    worst : Worst or None
-        The largest residual within the parameter errors, and the errors there.
+    worst : JudgedMotion or None
+        It with the parameter errors that leave the largest residual.
     exceeded : tuple of str
         Limits that the motion exceeds by more than a thousandth, the tolerance of every plan.
     robustness : Robustness or None
@@ -57,7 +56,7 @@ class ComparedMotion:
     name: str
     motion: Figures | None = None
     window: float | None = None
-    worst: Worst | None = None
+    worst: JudgedMotion | None = None
     exceeded: tuple[str, ...] = ()
     robustness: Robustness | None = None
     parameters: int | None = None
@@ -65,6 +64,13 @@ class ComparedMotion:
     seconds: float | None = None
     why: str = ""
     meaning: str = ""
+
+    @property
+    def task(self) -> PointToPoint:
+        """The move of the nominal plant."""
+        assert self.motion is not None
+        assert self.motion.candidate is not None  # which CVODES has judged
+        return self.motion.candidate.task
 
 
 @takes(task=PointToPoint)

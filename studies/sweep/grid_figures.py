@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import rest_of
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.move_grid import Axis
 from quietarm.studies.sweep.store import Store
@@ -106,7 +106,7 @@ def _head(figure: Figure, store: Store) -> None:
     """What is seen of a grid: how many cells have a plan, its energies, and what they leave."""
     task = store.definition.grid.task
     plant = ", ".join([moved(task), *limit_words(task)])
-    cells = caption_of_cells(store.read("energy"), store.read("residual"), task.plant.tip_unit)
+    cells = caption_of_cells(store.read("energy"), store.read("residual"), task)
     head(figure, cells, plant)
 
 
@@ -135,7 +135,7 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
     residual = residual_label(task.plant.tip_unit, task.residual_window)
     variables = {
         "energy": ("energy F2 [J]", 1.0, 0.0),
-        "residual": (residual, scale, REST * scale),
+        "residual": (residual, scale, rest_of(task) * scale),
         "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
     }
     all_variables = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from quietarm.ocp import SolveStatus
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import is_at_rest
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
 from quietarm.views.report.words import moved, residual_place
@@ -59,9 +59,11 @@ def cells_along(store: Store) -> list[str]:
     if more_axes or len(axis.values) > most_lines:
         return []
     status, energy, residual = (store.read(name) for name in (STATUS, "energy", "residual"))
-    shown, factor = tip_scale(store.definition.grid.task.plant.tip_unit)
+    task = store.definition.grid.task
+    shown, factor = tip_scale(task.plant.tip_unit)
     residuals = [
-        f"{factor * value:.4g}" if value >= REST else "rest" for value in residual.tolist()
+        "rest" if is_at_rest(value, task) else f"{factor * value:.4g}"
+        for value in residual.tolist()
     ]
     known = np.isfinite(energy)
     cells = {

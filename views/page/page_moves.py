@@ -17,6 +17,7 @@ from quietarm.ocp import (
     task_difference,
 )
 from quietarm.ocp.objectives import refuse_peaks
+from quietarm.ocp.rest import is_at_rest
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.views.pictures import KnownPoint
 from quietarm.views.report.method_rows import described, is_gradient
@@ -51,6 +52,11 @@ class Choice:
     energy: float
     price: float | None = None
     name: str = ""
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the tip is at rest on arrival, or as the task asks."""
+        return is_at_rest(self.residual, self.plan.task)
 
 
 @dataclass(frozen=True)

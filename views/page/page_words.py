@@ -14,7 +14,7 @@ from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.figures import ENERGY, Figure, figures_in
 from quietarm.ocp.limits import PAGE, QUANTITIES, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import is_at_rest
 from quietarm.views.page.page_moves import Choice, Move
 from quietarm.views.pictures.meaning import is_plain_cycloid
 from quietarm.views.pictures.motion import heading, names_of_curves, scale_of
@@ -54,7 +54,7 @@ class ShownFigures:
         cells = list[str]()
         for figure in figures_in(PAGE):
             value = self.values[figure.name]
-            if figure.name == RESIDUAL and value < REST:
+            if figure.name == RESIDUAL and is_at_rest(value, task):
                 cells.append("at rest" if task.final is None else "as asked")
             elif isnan(value):
                 cells.append("-")
@@ -90,7 +90,7 @@ def spot_words(choice: Choice) -> str:
 
 def swing_words(choice: Choice) -> str:
     """What the tip does after arrival."""
-    if choice.residual < REST:
+    if choice.at_rest:
         return _residual(choice)
     task = choice.plan.task
     worst = " at worst" if task.ranges else ""
@@ -108,7 +108,7 @@ def sentence(move: Move, choice: Choice) -> str:
     energy, of_stillest = _apart(choice.energy, stillest.energy)
     saved = percents([1 - choice.energy / stillest.energy])  # a front's energies fall
     at_rest = "arriving at rest" if move.task.final is None else "arriving as asked"
-    if stillest.residual >= REST:
+    if not stillest.at_rest:
         at_rest = f"the stillest motion, {_residual(stillest)},"
     return (
         f"{_residual(choice)} of residual vibration{worst} saves {saved} of the energy: {energy}, "
@@ -118,7 +118,7 @@ def sentence(move: Move, choice: Choice) -> str:
 
 def _residual(choice: Choice) -> str:
     task = choice.plan.task
-    if choice.residual < REST:
+    if choice.at_rest:
         return "at rest" if task.final is None else "as asked"
     unit, factor = tip_scale(task.plant.tip_unit)
     return f"{_digits(factor * choice.residual)} {unit}"
@@ -156,12 +156,12 @@ def _against_cycloid(move: Move, choice: Choice) -> str:
     does = f"leaves it swinging by up to {_residual(cycloid)}"
     if move.task.final is not None:
         does = f"is off that by up to {_residual(cycloid)}"
-    if cycloid.residual < REST:
+    if cycloid.at_rest:
         does = f"arrives {_residual(cycloid)}, too"
     broken = _broken_by_cycloid(move, choice.plan.task)
     if not _buys_stillness(choice, cycloid):
         return f"{arrives} and takes {takes}, {than} the plain cycloid, which {does}.{broken}"
-    bought = "a still arrival" if choice.residual < REST else "a stiller arrival"
+    bought = "a still arrival" if choice.at_rest else "a stiller arrival"
     return (
         f"{arrives}. That takes {takes}, {than} the plain cycloid, and buys {bought}: the cycloid "
         f"{does}.{broken}"
@@ -200,7 +200,7 @@ def _buys_stillness(choice: Choice, cycloid: Choice) -> bool:
 def _arrival(choice: Choice) -> str:
     """What the tip does from the arrival on, as the second half of a sentence."""
     task = choice.plan.task
-    if choice.residual < REST:
+    if choice.at_rest:
         return f"arrives {_residual(choice)}"
     worst = " in the worst case" if task.ranges else ""
     if task.final is not None:
@@ -229,7 +229,7 @@ def _next_step(move: Move, choice: Choice) -> str:
     step = _step_of(move)
     if choice.residual + step > last.residual:
         return ""
-    more = " more" if choice.residual >= REST else " of residual vibration"
+    more = " more" if not choice.at_rest else " of residual vibration"
     saved = min(step * choice.price, choice.energy - last.energy)
     if saved <= 0:
         return ""

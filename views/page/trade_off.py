@@ -18,7 +18,7 @@ from quietarm.ocp import Front, Plan
 from quietarm.ocp.checks import instance, positive
 from quietarm.ocp.escapes import one_line, script_json
 from quietarm.ocp.files import write_whole
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import rest_of
 from quietarm.views.page.page_moves import (
     Answers,
     Choice,
@@ -378,7 +378,7 @@ def _content(
         "arrival": int(np.searchsorted(times, task.duration)),
         "end": float(times[-1]),
         "residual": f"residual vibration F1 {window_words(task.residual_window)}",
-        "rest": REST,
+        "rest": rest_of(task),
         "unit": unit,
         "factor": factor,
         "swings_about_rest": task.final is None and not task.ranges,

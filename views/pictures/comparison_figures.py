@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.score import within
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import rest_of
 from quietarm.views.pictures.axes import (
     TITLE,
     axes_or_new,
@@ -155,7 +155,7 @@ def draw_comparison(
     if comparison.floor is not None:
         _draw_floor(ax, comparison, scale * _left(comparison) if small else 0.0)
     if not small:
-        mark_points(ax, comparison.best_front, tip_unit)
+        mark_points(ax, comparison.best_front, comparison.task)
     highest = max(
         [tallest * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
     )
@@ -255,7 +255,7 @@ def _up_to(points: Array, right: float) -> Array:
 def _left(comparison: Comparison) -> float:
     # a logarithmic axis begins at this residual [m], or at this multiple of the least of all
     aside = 0.9
-    return max(REST, aside * float(comparison.best_front[0, 0]))
+    return max(rest_of(comparison.task), aside * float(comparison.best_front[0, 0]))
 
 
 def _right(comparison: Comparison) -> float:

@@ -15,7 +15,7 @@ from quietarm.ocp import Front, Polish
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import rest_of
 from quietarm.views.pictures.axes import (
     TITLE,
     axes_or_new,
@@ -82,9 +82,10 @@ def draw_fronts(
     if len(names) != len(fronts):
         raise ValueError(f"{len(fronts)} fronts have {len(names)} labels; give each front one")
     for front, name, look_of_front in zip(fronts, names, _looks_of(fronts)):
+        shown = np.maximum(front.residuals, rest_of(front.task))  # none has no logarithm
         if len(front.objectives) > len(RESIDUAL_AND_ENERGY):  # of a surface no line joins points
             ax.plot(
-                np.maximum(front.residuals, REST) * scale, front.energies, look_of_front.mark,
+                shown * scale, front.energies, look_of_front.mark,
                 color=look_of_front.colour, markersize=3, alpha=0.8, label=name,
             )  # fmt: skip
             continue
@@ -92,7 +93,7 @@ def draw_fronts(
         places = np.searchsorted(front.residuals, middles)  # no line crosses a gap
         draw_front(
             ax,
-            np.insert(np.maximum(front.residuals, REST), places, np.nan),  # rest has no logarithm
+            np.insert(shown, places, np.nan),
             np.insert(front.energies, places, np.nan),
             tip_unit, exact=is_gradient(front.record.method), color=look_of_front.colour,
             marker=look_of_front.mark, markersize=3, alpha=0.8, label=name,
@@ -105,7 +106,9 @@ def draw_fronts(
             transform=ax.get_xaxis_transform(), label=f"{len(limits)} not found",
         )  # fmt: skip
     if not linear:
-        all_residuals = [max(point.residual, REST) for front in fronts for point in front.points]
+        all_residuals = [
+            max(point.residual, rest_of(front.task)) for front in fronts for point in front.points
+        ]
         logarithmic(ax, all_residuals, least_span=_LOGARITHMIC_FROM)
     name_objectives(ax, tip_unit)
     if len(fronts) <= _MOST_NAMED and len(ax.get_legend_handles_labels()[1]) > 1:
@@ -262,7 +265,9 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     tip_unit = fronts[0].task.plant.tip_unit
     name_objectives(axes[0], tip_unit, fronts[0].task.residual_window)
     if len(fronts) == 1:
-        mark_points(axes[0], np.column_stack([fronts[0].residuals, fronts[0].energies]), tip_unit)
+        mark_points(
+            axes[0], np.column_stack([fronts[0].residuals, fronts[0].energies]), fronts[0].task
+        )
         axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
         draw(fronts, ax)
@@ -277,7 +282,7 @@ def polish_figure(before: Front, polish: Polish) -> Figure:
     draw_fronts([before, polish.front], ax, ("before", "after"))
     tip_unit = before.task.plant.tip_unit
     name_objectives(ax, tip_unit, before.task.residual_window)
-    residuals = [max(gain.residual, REST) for gain in polish.gains]
+    residuals = [max(gain.residual, rest_of(before.task)) for gain in polish.gains]
     shown_residuals = np.multiply(tip_scale(tip_unit)[1], residuals)
     shares = [100 * gain.share for gain in polish.gains]
     axes_or_new(saved).plot(shown_residuals, shares, PLAN.mark, color=PLAN.colour, markersize=3)

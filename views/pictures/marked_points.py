@@ -8,14 +8,15 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp.front.points import has_knee, knee_of
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import is_at_rest, rest_of
+from quietarm.ocp.task import PointToPoint
 from quietarm.views.pictures.grammar import INK
 from quietarm.views.tips import tip_scale, tip_words
 
 Array = NDArray[np.float64]
 
 
-def mark_points(ax: Axes, front: Array, tip_unit: str) -> None:
+def mark_points(ax: Axes, front: Array, task: PointToPoint) -> None:
     """Mark and name points of a front, shape (n, 2): residuals [tip's unit], rising, energies [J].
 
     The stillest, the cheapest, the knee if the front bends, and what 1 mm allows, each with its
@@ -23,6 +24,7 @@ def mark_points(ax: Axes, front: Array, tip_unit: str) -> None:
     """
     if not len(front):
         return
+    tip_unit = task.plant.tip_unit
     named = {"stillest": ("<", front[0])}
     if len(front) > 1:
         named["cheapest"] = (">", front[-1])
@@ -33,12 +35,12 @@ def mark_points(ax: Axes, front: Array, tip_unit: str) -> None:
         named[tip_words(SEARCH_RESIDUAL, tip_unit)] = ("|", np.array([SEARCH_RESIDUAL, energy]))
     scale = tip_scale(tip_unit)[1]
     for name, (mark, (residual, energy)) in named.items():
-        label = f"{name}: {energy:.4g} J{_place(name, residual, tip_unit)}"
-        ax.plot(scale * max(residual, REST), energy, mark, color=INK, fillstyle="none",
+        label = f"{name}: {energy:.4g} J{_place(name, residual, task)}"
+        ax.plot(scale * max(residual, rest_of(task)), energy, mark, color=INK, fillstyle="none",
                 markersize=8, zorder=4, label=label)  # fmt: skip
 
 
-def _place(name: str, residual: float, tip_unit: str) -> str:
+def _place(name: str, residual: float, task: PointToPoint) -> str:
     """Where a named point is, unless its name says so."""
-    words = "rest" if residual < REST else tip_words(residual, tip_unit)
+    words = "rest" if is_at_rest(residual, task) else tip_words(residual, task.plant.tip_unit)
     return "" if name == words else f" at {words}"

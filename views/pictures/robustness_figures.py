@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from quietarm.interrupts import interruptible
 from quietarm.ocp import Robustness
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import REST, rest_of
 from quietarm.views.pictures.axes import (
     axes_or_new,
     legend_of,
@@ -97,18 +97,21 @@ def draw_motions(
         The axes, residuals logarithmic; each motion has a label for a legend.
     """
     ax = axes_or_new(ax)
+    least = REST
     for judged, how in zip(motions, looks([judged.meaning for judged in motions])):
         if judged.motion is None:
             continue
         energy = judged.motion.energy
         worst = judged.motion.residual if judged.worst is None else judged.worst.residual
         scale = tip_scale(tip_unit)[1]
-        ends = [scale * max(residual, REST) for residual in (judged.motion.residual, worst)]
+        rest = rest_of(judged.task)
+        least = min(least, rest)
+        ends = [scale * max(residual, rest) for residual in (judged.motion.residual, worst)]
         line: dict[str, Any] = {"color": how.colour, "marker": how.mark, "markersize": 5}
         ax.plot(ends[0], energy, fillstyle="none", **line)
         ax.plot(ends, [energy] * 2, linestyle=how.dash, linewidth=1, label=judged.name,
                 markevery=[1], **line)  # fmt: skip
-    logarithmic(ax, [REST, 1.0])
+    logarithmic(ax, [least, 1.0])
     name_objectives(ax, tip_unit, _window(motions))
     return ax
 

@@ -13,7 +13,7 @@ from quietarm.ocp import Front
 from quietarm.ocp.checks import takes
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective, objectives_on
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import is_at_rest, rest_of
 from quietarm.views.pictures.axes import axes_or_new, logarithmic, name_objectives
 from quietarm.views.pictures.grammar import look
 from quietarm.views.tips import tip_scale
@@ -51,6 +51,7 @@ def draw_peak(fronts: Sequence[Front], ax: Axes | None = None, peak: int = 0) ->
     if not 0 <= peak < len(peaks):
         raise ValueError(f"peak is {peak}, and the front has {len(peaks)}; give one from 0")
     scale = tip_scale(residual.unit)[1]
+    rest = rest_of(first.task)
     values = [front.objective_values for front in fronts]
     column = len(first.objectives) - len(peaks) + peak
     shown = [_shown(peaks[peak], table[:, column]) for table in values]
@@ -58,13 +59,13 @@ def draw_peak(fronts: Sequence[Front], ax: Axes | None = None, peak: int = 0) ->
     limits: Any = {"vmin": float(together.min()), "vmax": float(together.max())}
     marks = None
     for i, (table, colours) in enumerate(zip(values, shown)):
-        residuals = np.maximum(table[:, 0], REST) * scale
+        residuals = np.maximum(table[:, 0], rest) * scale
         marks = ax.scatter(
             residuals, table[:, 1], c=colours, cmap="viridis", s=16, marker=look(i).mark, **limits
         )
     logarithmic(
         ax,
-        np.concatenate([np.maximum(table[:, 0], REST) for table in values]),
+        np.concatenate([np.maximum(table[:, 0], rest) for table in values]),
         least_span=_LOGARITHMIC_FROM,
     )
     name_objectives(ax, residual.unit, first.task.residual_window)
@@ -113,7 +114,7 @@ def draw_parallel(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     ax.set_yticks([])
     ax.set_ylabel("from the least to the largest [unit below]")
     for place, objective, low, size in zip(places, objectives, least, extent):
-        at_rest = objective.name == RESIDUAL and low < REST
+        at_rest = objective.name == RESIDUAL and is_at_rest(low, first.task)
         ends = [f"{end:.3g}" for end in _shown(objective, np.array([low, low + size]))]
         for height, end, side in ((0.0, "rest" if at_rest else ends[0], "top"),
                                   (1.0, ends[1], "bottom")):  # fmt: skip

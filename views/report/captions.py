@@ -12,8 +12,9 @@ from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
 from quietarm.ocp import Floor, Front, Plan, Polish
 from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import CAPTION
-from quietarm.ocp.record import REST
-from quietarm.views.report.words import error_words
+from quietarm.ocp.rest import is_at_rest
+from quietarm.ocp.task import PointToPoint
+from quietarm.views.report.words import error_words, residual_words
 from quietarm.views.tips import tip_words
 
 if TYPE_CHECKING:
@@ -39,10 +40,10 @@ def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
     for name, judged in known.items():
         assert judged.motion is not None
         residuals.append(judged.motion.residual)
-        words = _left(judged.motion.residual, tip_unit)
+        words = _left(judged.motion.residual, judged.task)
         if judged.worst is not None:
             residuals.append(judged.worst.residual)
-            words = f"{_left(judged.worst.residual, tip_unit)} in the worst case"
+            words = f"{_left(judged.worst.residual, judged.task)} in the worst case"
         if judged.motion.candidate is not None:
             words = ", ".join([words, *further_words(judged.motion.candidate, CAPTION)])
         said[name] = judged.motion.energy, words
@@ -80,15 +81,17 @@ def _ending(motion: Plan | Floor) -> str:
     """How a motion ends: at rest, or what it leaves, of a robust plan in the worst case."""
     task = motion.task
     if isinstance(motion, Plan) and motion.worst is not None:
-        worst = _left(motion.worst.residual, task.plant.tip_unit)
+        worst = _left(motion.worst.residual, task)
         return f"{worst} with {error_words(task)}"
-    if motion.residual < REST and task.final:
+    if is_at_rest(motion.residual, task) and task.final:
         return "arrives in the state that is wanted"
-    return _left(motion.residual, task.plant.tip_unit)
+    return _left(motion.residual, task)
 
 
-def _left(residual: float, tip_unit: str) -> str:
-    return "arrives at rest" if residual < REST else f"leaves {tip_words(residual, tip_unit)}"
+def _left(residual: float, task: PointToPoint) -> str:
+    if is_at_rest(residual, task):
+        return "arrives at rest"
+    return f"leaves {tip_words(residual, task.plant.tip_unit)}"
 
 
 def verified_words(motions: Sequence[Plan | Floor]) -> str:
@@ -109,7 +112,8 @@ def caption_of_front(front: Front) -> str:
         return "No point of this front was found"
     stillest = front.points[0]
     cheapest = front.points[-1]
-    still = "at rest" if stillest.residual < REST else tip_words(stillest.residual, tip_unit)
+    still = residual_words(stillest.residual, front.task)
+    still = "at rest" if still == "rest" else still
     words = f"{stillest.energy:.3g} J {still}"
     if len(front.points) == 1:
         return f"One motion: {words}"
@@ -144,7 +148,7 @@ def caption_of_polish(polish: Polish) -> str:
 
 
 def caption_of_cells(
-    energies: NDArray[np.float64], residuals: NDArray[np.float64], tip_unit: str
+    energies: NDArray[np.float64], residuals: NDArray[np.float64], task: PointToPoint
 ) -> str:
     """How many cells of a grid have a plan, what these take, and what they leave."""
     planned = np.isfinite(energies)
@@ -155,6 +159,6 @@ def caption_of_cells(
     high = energies[planned].max()
     left = residuals[planned].max()
     words = f"{words}, of {low:.3g} to {high:.3g} J"
-    if left < REST:
+    if is_at_rest(left, task):
         return f"{words}; all arrive at rest"
-    return f"{words}; they leave up to {tip_words(float(left), tip_unit)}"
+    return f"{words}; they leave up to {tip_words(float(left), task.plant.tip_unit)}"

@@ -49,7 +49,7 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
         *_grid_lines(front),
         *failure_lines(front, asked_for),
         *(
-            f"no weight reaches residuals from {residual_words(begin, tip_unit)} to "
+            f"no weight reaches residuals from {residual_words(begin, front.task)} to "
             f"{tip_words(end, tip_unit)}: the front is not convex there"
             for begin, end in front.gaps
         ),
@@ -188,7 +188,7 @@ def _noise_lines(front: Front) -> list[str]:
 def _point_in_words(front: Front, point: FrontPoint) -> str:
     """Energy and residual; of an uncertain plant also the worst case."""
     tip_unit = front.task.plant.tip_unit
-    words = f"{point.energy:.4g} J at {residual_words(point.residual, tip_unit)}"
+    words = f"{point.energy:.4g} J at {residual_words(point.residual, front.task)}"
     words += "".join(
         f", {QUANTITIES[objective.quantity].words.of(front.task.plant.joint)} "
         f"{tip_words(point.peaks[objective.quantity], objective.unit)}"

@@ -18,7 +18,6 @@ from quietarm.ocp import (
     Plan,
     PointToPoint,
     ShapedCycloid,
-    Worst,
 )
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
 from quietarm.ocp.joint_words import figure_words
@@ -27,7 +26,8 @@ from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_along import EXCESS
-from quietarm.ocp.record import AGREEMENT, REST
+from quietarm.ocp.record import AGREEMENT
+from quietarm.ocp.rest import is_at_rest, rest_of
 from quietarm.views.report.robot_rows import way_rows
 from quietarm.views.report.words import (
     move_of,
@@ -84,7 +84,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
 
 def _arrival_rows(plan: Plan) -> list[Row]:
     """What a robust plan may leave, said first: it does not arrive at rest."""
-    if plan.worst is None or plan.worst.residual < REST * plan.task.smallness:
+    if plan.worst is None or is_at_rest(plan.worst.residual, plan.task):
         return []
     residual = _tip(plan.task, plan.worst.residual)
     return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
@@ -162,7 +162,7 @@ def sensitivity_rows(plan: Plan) -> list[Row]:
     ]
 
 
-def worst_in_words(worst: Worst, tip_unit: str) -> str:
+def worst_in_words(worst: JudgedMotion, tip_unit: str) -> str:
     """The residual of the worst case, and the parameter errors that it comes with."""
     return f"{tip_words(worst.residual, tip_unit)} with {_signed(worst.errors)}"
 
@@ -171,7 +171,7 @@ def _signed(errors: Mapping[str, float]) -> str:
     return ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
 
 
-def _worst_of_plan(plan: Plan, worst: Worst) -> str:
+def _worst_of_plan(plan: Plan, worst: JudgedMotion) -> str:
     """The worst case of a robust plan, and how far it is from the residual limit."""
     words = worst_in_words(worst, plan.task.plant.tip_unit)
     if plan.excess is None:
@@ -254,10 +254,9 @@ def _figure_rows(
     """A motion's energy, residual, peaks and overshoot; remedies of those that are too hard."""
     motion = candidate.motion
     residual = _tip(task, motion.residual)
-    rest = REST * task.smallness
-    if motion.residual < rest:  # nobody sees a difference
+    if is_at_rest(motion.residual, task):
         where = "as wanted" if task.final else "at rest"
-        residual = f"{where} (below {_tip(task, rest)})"
+        residual = f"{where} (below {_tip(task, rest_of(task))})"
     energy = f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"
     rows = {
         ENERGY: ("energy (F2)", f"{energy}{_warnings(task, ENERGY)}"),

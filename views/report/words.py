@@ -12,7 +12,7 @@ from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective
-from quietarm.ocp.record import REST
+from quietarm.ocp.rest import is_at_rest
 from quietarm.views.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
@@ -53,9 +53,9 @@ def span_words(begin: float, end: float) -> str:
     return " to ".join(f"{round(time, 3):.12g}" for time in (begin, end)) + " s"
 
 
-def residual_words(residual: float, tip_unit: str) -> str:
+def residual_words(residual: float, task: PointToPoint) -> str:
     """A residual in the unit that is shown; `rest` where it counts as that."""
-    return "rest" if residual < REST else tip_words(residual, tip_unit)
+    return "rest" if is_at_rest(residual, task) else tip_words(residual, task.plant.tip_unit)
 
 
 def window_words(window: float) -> str:

@@ -7,7 +7,7 @@ import pytest
 from moves import CASES
 
 import quietarm as qa
-from quietarm.ocp.solvers.problem import STILL
+from quietarm.ocp.rest import STILL
 
 POINTS = 8
 

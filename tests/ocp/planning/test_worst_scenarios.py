@@ -4,7 +4,6 @@ import pytest
 
 import quietarm as qa
 from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
-from quietarm.ocp.robustness import Worst
 
 
 @pytest.fixture
@@ -25,5 +24,7 @@ def test_a_worst_case_replaces_one_that_is_near_and_no_corner(task):
 
 
 def test_what_is_a_scenario_is_none_again(task):
-    at_corner, new = ({"frequency": 0.1, "damping": -0.4}, {"frequency": 0.01, "damping": 0.0})
-    assert new_scenarios(task, [Worst(at_corner, 1e-3), Worst(new, 1e-3)]) == [[0.01, 0.0]]
+    motion = qa.JudgedMotion.of_profile(task, qa.CycloidPolynomial(0), [])
+    at_corner = motion.perturbed({"frequency": 0.1, "damping": -0.4})
+    new = motion.perturbed({"frequency": 0.01, "damping": 0.0})
+    assert new_scenarios(task, [at_corner, new]) == [[0.01, 0.0]]

@@ -1,0 +1,202 @@
+"""What would be feasible where a task is not: the least peaks that a plan can have, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.judged_motion import JudgedMotion
+from quietarm.ocp.limits import RESIDUAL, Limit
+from quietarm.ocp.planning.certify import by_cvodes, certify_one
+from quietarm.ocp.rest import still_of
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, Program, Solution
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.task import PointToPoint
+
+Array = NDArray[np.float64]
+_ROOM = 1.001
+"""A least value is quoted with this margin, so that a user who asks for it gets a plan."""
+
+
+def explain(
+    problem: Program,
+    tried: Sequence[Solution],
+    least: Mapping[str, Solution],
+    solver: Solver,
+) -> SolverFailedError:
+    """The error for a problem that no start solved; least peaks as of `least_peaks_of`."""
+    profile = problem.profile
+    bound = problem.bound
+    return unmet(
+        problem.task,
+        problem.limits,
+        tried,
+        _confirm(problem, least, solver),
+        motion=f"motion of {profile.amount}",
+        within="" if bound is None else f", coefficients within +-{bound:g}",
+        remedy=f"more {profile.term}s or a longer duration",
+    )
+
+
+def offers_for(problem: Program, starts: Sequence[Array], solver: Solver) -> str:
+    """Limits with which there is a plan, each with all else unchanged; nothing where none is."""
+    least = least_peaks_of(problem, starts[:2], solver)
+    return _offers(problem.task, problem.limits, _confirm(problem, least, solver))
+
+
+def _confirm(problem: Program, least: Mapping[str, Solution], solver: Solver) -> dict[str, float]:
+    """Those least peaks with which there is a plan, as CVODES finds them."""
+    limits = problem.limits
+
+    def resimulated(solution: Solution) -> JudgedMotion:
+        return by_cvodes(problem, solution.coefficients)
+
+    peaks = true_peaks(limits, least, resimulated)
+    return {
+        limit.name: peaks[limit.name]
+        for limit in limits
+        if limit.name in peaks
+        and has_a_plan(
+            _widened(problem, limit, peaks[limit.name]),
+            least[limit.name].coefficients,
+            solver,
+        )
+    }
+
+
+def _widened(problem: Program, limit: Limit, peak: float) -> Program:
+    """The problem with a limit that is as wide as would be offered."""
+    offered = limit.widened_to(peak * _ROOM)
+    limits = problem.limits
+    replaced = tuple(offered if known is limit else known for known in limits)
+    return problem.asking(limits=replaced)
+
+
+def has_a_plan(problem: Program, start: Array, solver: Solver, most_refined: int = 2) -> bool:
+    """Whether a plan is found from one start, and CVODES confirms it.
+
+    It may take so many times the steps: where a remedy needs finer ones, it is at its own edge, and
+    every doubling takes as long as all before.
+    """
+    (solution,) = solver.solve([problem], [start])
+    if not solution.status.solved:
+        return False
+    steps = min(most_refined * problem.steps, MOST_SOLVER_STEPS)
+    try:
+        certify_one(problem, solution, solver, most_steps=steps)
+    except SolverFailedError:
+        return False
+    return True
+
+
+class Attempt(Protocol):
+    """A run of the solver: over coefficients, or over all joint motions."""
+
+    @property
+    def status(self) -> SolveStatus:
+        """How it ended."""
+        ...
+
+    @property
+    def peaks(self) -> Mapping[str, float]:
+        """Each limited quantity [SI units]."""
+        ...
+
+
+AnyAttempt = TypeVar("AnyAttempt", bound=Attempt)
+
+
+def unmet(
+    task: PointToPoint,
+    limits: Sequence[Limit],
+    runs: Sequence[Attempt],
+    least: Mapping[str, float],
+    *,
+    motion: str,
+    remedy: str,
+    within: str = "",
+    otherwise: str = "",
+) -> SolverFailedError:
+    """The error for limits that no start met, to be raised by the caller.
+
+    In words, what was looked for, and within what beside the limits; what may help where nothing
+    else does; what helps `otherwise`, where a solver did not end at an infeasible motion.
+    """
+    statuses = [run.status for run in runs]
+    if SolveStatus.INFEASIBLE not in statuses:
+        ended = statuses[0].text
+        if otherwise:
+            ended = f"{ended.partition(';')[0]}; {otherwise}"
+        return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
+    bounds = ", ".join(_stated(limit) for limit in limits if limit.size < np.inf)
+    several = "removing any single one of these limits does not help, so widen several"
+    feasible = _offers(task, limits, least) or several
+    return InfeasibleTaskError(
+        f"found no {motion} with {bounds}{within}; {feasible}", f"{remedy} may also do"
+    )
+
+
+def _offers(task: PointToPoint, limits: Sequence[Limit], least: Mapping[str, float]) -> str:
+    """Least peaks that a limit does not keep, as limits that would do."""
+    remedies = [
+        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
+        for limit in limits
+        if limit.name in least and not limit.keeps(least[limit.name], at_rest=still_of(task))
+    ]
+    return f"feasible with all else unchanged: {' or '.join(remedies)}" if remedies else ""
+
+
+def _stated(limit: Limit) -> str:
+    """A limit in words."""
+    if limit.name == RESIDUAL and limit.size == 0:
+        return "the tip at rest on arrival"
+    return f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"
+
+
+def least_peaks_of(
+    problem: Program, starts: Sequence[Array], solver: Solver
+) -> dict[str, Solution]:
+    """Make each limited quantity in turn as small as it can be while the other limits are kept."""
+
+    def solve_least(limits: Sequence[Limit], name: str) -> list[Solution]:
+        relaxed = problem.asking(limits=tuple(limits), minimise={name: 1.0})
+        return solver.solve([relaxed] * len(starts), starts)
+
+    return least_peaks(problem.limits, solve_least)
+
+
+def least_peaks(
+    limits: Sequence[Limit], solve_least: Callable[[Sequence[Limit], str], Sequence[AnyAttempt]]
+) -> dict[str, AnyAttempt]:
+    """The same by what makes one quantity small within the limits that remain."""
+    best: dict[str, AnyAttempt] = {}
+    for name in (limit.name for limit in limits):
+        remaining = [limit for limit in limits if limit.name != name]
+        attempts = solve_least(remaining, name)
+        solved = [attempt for attempt in attempts if attempt.status.solved]
+        if solved:
+            best[name] = min(solved, key=lambda attempt, name=name: attempt.peaks[name])
+    return best
+
+
+def true_peaks(
+    limits: Sequence[Limit],
+    least: Mapping[str, AnyAttempt],
+    resimulated: Callable[[AnyAttempt], JudgedMotion],
+) -> dict[str, float]:
+    """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
+
+    def peak_of(limit: Limit, attempt: AnyAttempt) -> float:
+        at_nodes = attempt.peaks[limit.name]
+        try:
+            return max(at_nodes, limit.peak_of(resimulated(attempt).figures))
+        except SolverFailedError:
+            return at_nodes
+
+    return {
+        limit.name: peak_of(limit, least[limit.name]) for limit in limits if limit.name in least
+    }
