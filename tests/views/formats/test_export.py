@@ -160,7 +160,7 @@ def residual_by_small_steps(task, acceleration, speed):
 @pytest.mark.parametrize(
     ("typed", "begins"),
     [
-        ("", "time_s,angle_rad,speed_rad_s,acceleration_rad_s2\n0,"),
+        ("", "time_s,angle_rad,speed_rad_s,acceleration_rad_s2,tip_m,torque_Nm,power_W\n0,"),
         ("--columns time:ms,angle:deg", "time_ms,angle_deg\n0,"),
         ("--format ros", "joint_names:\n- 'joint'\n"),
     ],

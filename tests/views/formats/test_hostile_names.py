@@ -109,7 +109,7 @@ def test_no_title_ends_a_comment_of_c():
         assert len(words.splitlines()) <= 1
 
 
-def test_both_tables_quote_the_names_and_no_heading_is_a_formula(plan, tmp_path):
+def test_tables_quote_the_names_and_no_heading_is_a_formula(plan, tmp_path):
     plan.save_csv(tmp_path / "plan.csv", 5.0)
     export_plan(plan, tmp_path / "export.csv", rate=5.0, columns="time,angle")
     for name in ("plan.csv", "export.csv"):
