@@ -199,7 +199,7 @@ def test_python_writes_films_and_pages_as_the_command_does(plan, tmp_path):
 @pytest.mark.parametrize(
     ("settings", "why"),
     [
-        ({"columns": "time"}, "columns is for csv, mat, not for ros"),
+        ({"columns": "time"}, "columns is for csv and mat, not for ros"),
         ({"rats": 5.0}, r"unknown setting of ros 'rats'; did you mean 'rate'\?"),
         ({"rate": "often"}, "rate is 'often'; give a number in Hz"),
         ({"joint": 3}, "joint is 3; give a text"),
