@@ -154,6 +154,21 @@ def listed(names: Iterable[str]) -> str:
     return cut(", ".join(clipped(name, most) for name in names), _MOST_LISTED)
 
 
+def joined(words: Iterable[str], last: str = "and") -> str:
+    """Words with commas, and an "and", or another word, before the last."""
+    *front, end = list(words) or [""]
+    return f"{', '.join(front)} {last} {end}" if front else end
+
+
+def with_article(noun: str) -> str:
+    """A noun behind its indefinite article: a plan, an amount, an hour."""
+    silent = ("hour", "honest", "heir")
+    sounded = ("uni", "use", "usu", "eu", "one", "ur")  # as of "you" or "one"
+    word = noun.lower()
+    vowel = word.startswith((*"aeiou", *silent)) and not word.startswith(sounded)
+    return f"{'an' if vowel else 'a'} {noun}"
+
+
 def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
     """The message about a name that is not known."""
     return f"unknown {what} {quoted(name)}{nearest(name, known)} (known: {listed(known)}{also})"

@@ -24,6 +24,7 @@ from quietarm.models.number_checks import (
     finite,
     has_no,
     install,
+    joined,
     listed,
     nearest,
     nearest_name,
@@ -34,6 +35,7 @@ from quietarm.models.number_checks import (
     spelling,
     unknown,
     whole,
+    with_article,
     words_of_error,
 )
 
@@ -54,6 +56,7 @@ __all__ = [
     "hashable",
     "install",
     "instance",
+    "joined",
     "known",
     "listed",
     "nearest",
@@ -70,6 +73,7 @@ __all__ = [
     "takes",
     "unknown",
     "whole",
+    "with_article",
     "words_of_error",
 ]
 

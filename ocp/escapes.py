@@ -1,4 +1,4 @@
-"""Text from files on its way into C, csv, YAML, JavaScript, Markdown, HTML and a terminal.
+"""Text from files on its way into C, Structured Text, csv, YAML, JavaScript, Markdown, HTML and a terminal.
 
 A name in a URDF may hold anything. Whatever writes such a text takes the function of its format,
 so that a reader of that format finds the text again and nothing else.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import html
 import json
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -46,6 +47,21 @@ def c_comment(text: str) -> str:
     """Words within a comment of C, which they neither end nor begin again."""
     line = one_line(text).replace("\\", "/")  # at the end of a line it would join the next
     return re.sub(r"\*(?=/)|/(?=\*)|\?(?=\?)", lambda match: f"{match[0]} ", line)
+
+
+def st_comment(text: str) -> str:
+    """Words within a comment of IEC 61131-3, (* and *), which they neither end nor nest."""
+    return re.sub(r"\*(?=\))|\((?=\*)", lambda match: f"{match[0]} ", one_line(text))
+
+
+def st_number(value: float, digits: int = 17) -> str:
+    """A real literal of IEC 61131-3, which has digits on both sides of its point."""
+    if not math.isfinite(value):
+        raise ValueError(f"{value} is no number of IEC 61131-3; give a finite number")
+    text = repr(float(value)) if digits >= 17 else f"{value:.{digits}g}"
+    mantissa, _, exponent = text.partition("e")
+    mantissa = mantissa if "." in mantissa else f"{mantissa}.0"
+    return f"{mantissa}E{int(exponent)}" if exponent else mantissa
 
 
 def yaml_string(text: str) -> str:

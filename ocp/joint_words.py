@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from quietarm.models import Plant
-from quietarm.models.dimensions import Unit, Words
 from quietarm.models.joint_motion import MIXED
 from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.judged_motion import JudgedMotion
@@ -13,21 +11,6 @@ from quietarm.ocp.limits import QUANTITIES
 def heading_unit(unit: str) -> str:
     """Return a unit as it stands in the heading of a column: rad_s2, Nm."""
     return unit.replace("/", "_").replace("^", "").replace(" ", "")
-
-
-def joint_headings(plant: Plant, *columns: tuple[Words, Unit]) -> list[str]:
-    """Return the headings of columns of a plant's joints, those of a joint beside each other.
-
-    Columns such as (ANGLE, WAY): angle_rad, of one that slides position_m. Several joints have
-    their names in front: elbow_angle_rad.
-    """
-    names = plant.joint_names
-    fronts = [f"{name}_" for name in names] if len(names) > 1 else [""]
-    return [
-        f"{front}{word.of(kind)}_{heading_unit(unit.of(kind))}"
-        for front, kind in zip(fronts, plant.joint_kinds)
-        for word, unit in columns
-    ]
 
 
 def further_words(candidate: JudgedMotion, place: str) -> list[str]:

@@ -19,7 +19,7 @@ import numpy as np
 
 from quietarm.interrupts import interruptible
 from quietarm.models import Plant, file_of_plant, known_plants
-from quietarm.ocp.checks import clipped, known, quoted
+from quietarm.ocp.checks import clipped, known, quoted, with_article
 from quietarm.ocp.energy import Energy, Mix
 from quietarm.ocp.errors import FileFormatError
 from quietarm.ocp.escapes import html_text
@@ -261,7 +261,7 @@ def read_document(path: str | Path, kind: str) -> Any:
                 f"{kind} again"
             ) from None
         raise FileFormatError(
-            f"{path} is not a {kind}: it is not whole, valid JSON in UTF-8 ({error}); "
+            f"{path} is not {with_article(kind)}: it is not whole, valid JSON in UTF-8 ({error}); "
             f"write the {kind} again, or save it so"
         ) from None
     try:
@@ -285,7 +285,8 @@ def _content_of(document: Any, path: str | Path, kind: type[Answer]) -> dict[str
     name = kind.kind
     if stated_format != f"quietarm-{name}":
         raise FileFormatError(
-            f"{path} is not a {name}: its format is {quoted(stated_format)}; give a {name} file"
+            f"{path} is not {with_article(name)}: its format is {quoted(stated_format)}; give "
+            f"{with_article(name)} file"
         )
     if stated_version in kind.read_by_2_0:
         raise FileFormatError(

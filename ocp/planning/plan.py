@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -14,17 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
-from quietarm.models.dimensions import ACCELERATION, ANGLE, EFFORT, SPEED, TORQUE, WAY, Words
-from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, positive, takes
+from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
-from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.figures import ENERGY, figures_in
 from quietarm.ocp.files import write_whole
-from quietarm.ocp.joint_words import figure_words, joint_headings
+from quietarm.ocp.joint_words import figure_words
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.move_table import USUAL_RATE, move_csv
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import Record, Setting, Verification
@@ -35,9 +33,6 @@ from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.ocp.task import PointToPoint
-
-_MOST_ROWS = 500_000
-"""Of a table to drive a joint with."""
 
 
 @dataclass(frozen=True)
@@ -230,25 +225,15 @@ class Plan(MotionAnswer):
         return rows
 
     @interruptible
-    def save_csv(self, path: str | Path, sample_rate: float = 1000.0) -> None:
+    def save_csv(self, path: str | Path, sample_rate: float = USUAL_RATE) -> None:
         """Write the move as a table to drive a joint with, so many rows a second [Hz].
 
-        Its header names the quantities with their units. The last row is the first tick at or after
-        arrival. ValueError when the rate is out of range or the file cannot be written.
+        Its heading names the quantities with their units: time, and of every joint angle, speed,
+        acceleration and torque, the tips, the power. `quietarm.views.export_plan` takes columns and
+        units. The last row is the first tick at or after arrival. ValueError when the rate is out
+        of range or the file cannot be written.
         """
-        ticks = ticks_of_move(self.task.duration, sample_rate)
-        sampled = self.sampled(np.arange(ticks + 1) / sample_rate)
-        plant = self.task.plant
-        tip_names = [f"{name}_{plant.tip_unit}" for name in plant.tip_names]
-        orders = (ANGLE, WAY), (Words("speed"), SPEED), (Words("acceleration"), ACCELERATION)
-        header = ["time_s", *joint_headings(plant, *orders), *tip_names]
-        header += [*joint_headings(plant, (TORQUE, EFFORT)), "power_W"]
-        sample = sampled.sample
-        moving = [value for joint in sample.joints for value in joint[:3]]
-        table = np.column_stack(
-            [sampled.time, *moving, sampled.tips, *sample.torques, sampled.power]
-        )
-        write_whole(path, csv_table(dict(zip(header, table.T)), "%.10g"))
+        write_whole(path, move_csv(self, rate=sample_rate))
 
 
 @takes(task=PointToPoint, profile=JointProfile)
@@ -312,18 +297,3 @@ def only_motion(
             "widen what is broken, or give a longer duration or another profile"
         )
     return plan.with_entries(residual_limit=residual_limit)
-
-
-def ticks_of_move(duration: float, sample_rate: float) -> int:
-    """Ticks from the start to the first at or after arrival."""
-    ticks = duration * positive("sample rate", sample_rate, "Hz")
-    if ticks < 1e-4:
-        raise ValueError(
-            f"sample rate is {sample_rate:g} Hz, a tick long after the arrival; give a higher rate"
-        )
-    if ticks > _MOST_ROWS:
-        raise ValueError(
-            f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows, of at most "
-            f"{_MOST_ROWS}; give at most {_MOST_ROWS / duration:.6g} Hz"
-        )
-    return max(1, math.ceil(ticks - 1e-9))

@@ -13,7 +13,7 @@ from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.evaluation.stated_figures import agrees, always_agrees_within
 from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
-from quietarm.ocp.checks import whole
+from quietarm.ocp.checks import whole, with_article
 from quietarm.ocp.figures import FIGURES
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
@@ -48,8 +48,8 @@ def import_front(
     columns = imported.coefficients.shape[1]
     if terms is not None and family(terms).size != columns:
         raise ValueError(
-            f"{file} has {columns} coefficients a motion, and a {family(terms).label} takes "
-            f"{family(terms).size}; leave --terms out, or transpose the table"
+            f"{file} has {columns} coefficients a motion, and {with_article(family(terms).label)} "
+            f"takes {family(terms).size}; leave --terms out, or transpose the table"
         )
     try:
         front, notes = _evaluated(

@@ -15,6 +15,7 @@ from rich.console import Console
 
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
+from quietarm.ocp.checks import with_article
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.named_profiles import POLYNOMIAL, families
@@ -242,7 +243,7 @@ def _solver_option(of_kinds: Mapping[str, Option], all_have_it: bool) -> click.O
 def _type_of(entry: Option) -> Any:
     """How an option of a solver is read: a number in its unit, or one of several words."""
     if entry.kind is float:
-        return Parsed(entry.word, partial(parse_usual, entry.unit, f"a {entry.word}"))
+        return Parsed(entry.word, partial(parse_usual, entry.unit, with_article(entry.word)))
     return Named(entry.name.replace("_", " "), entry.words) if entry.words else entry.kind
 
 

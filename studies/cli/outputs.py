@@ -12,7 +12,7 @@ import click
 from rich.console import Console
 
 from quietarm.interrupts import note_interrupts
-from quietarm.ocp import QuietarmError
+from quietarm.ocp import Plan, QuietarmError
 from quietarm.ocp.files import check_writable, unwritable
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.studies.cli.interrupted import InterruptedCommandError
@@ -135,9 +135,10 @@ def answer_files(
 ) -> list[File]:
     """An answer as JSON, as a table where it has one, as a picture, or in a format, by the ending.
 
-    In a format that takes several, further answers lie beside it.
+    The table of a plan is a format; a front has one of its own. In a format that takes several,
+    further answers lie beside it.
     """
-    saves = {".json": "save", ".csv": "save_csv"}
+    saves = {".json": "save"} if isinstance(answer, Plan) else {".json": "save", ".csv": "save_csv"}
     files = list[File]()
     for path in output:
         ending = ending_of(path)
@@ -153,7 +154,7 @@ def _exporting(answer: Any, beside: Sequence[Any]) -> Callable[[Path], Written]:
     """Return the function that writes an answer in the format of a file's ending."""
 
     def write(path: Path) -> Written:
-        form = format_of(path)
+        form = format_of(path.with_suffix(ending_of(path)))  # a .txt is a csv
         together = [answer, *(beside if SEVERAL in form.takes else ())]
         return Written(*write_in(form, together, path, settings_of_studies(form)))
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from quietarm.ocp.checks import spelling, unknown
+from quietarm.ocp.checks import spelling, unknown, with_article
 from quietarm.studies.cli.quantities import parse_pair, parse_usual
 
 
@@ -56,7 +56,7 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
 
 
 LENGTH, TIME, SHARE = (
-    Parsed(name, partial(parse_usual, unit, f"a {name}"))
+    Parsed(name, partial(parse_usual, unit, with_article(name)))
     for name, unit in {"length": "m", "time": "s", "share": "-"}.items()
 )
 SETTING = Parsed("name=value", parse_pair)

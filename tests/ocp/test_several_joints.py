@@ -186,9 +186,9 @@ def test_tables_have_the_columns_of_every_joint(gantry, tmp_path):
     gantry.save_csv(tmp_path / "move.csv", 100.0)
     header, *rows = (tmp_path / "move.csv").read_text().splitlines()
     assert header == (
-        "time_s,joint_1_position_m,joint_1_speed_m_s,joint_1_acceleration_m_s2,"
-        "joint_2_position_m,joint_2_speed_m_s,joint_2_acceleration_m_s2,"
+        "time_s,joint_1_position_m,joint_2_position_m,joint_1_speed_m_s,joint_2_speed_m_s,"
+        "joint_1_acceleration_m_s2,joint_2_acceleration_m_s2,"
         "tip_1_m,tip_2_m,joint_1_force_N,joint_2_force_N,power_W"
     )
     last = [float(value) for value in rows[-1].split(",")]
-    assert (last[0], last[1], last[4]) == pytest.approx((0.7, 0.4, 0.3))
+    assert (last[0], last[1], last[2]) == pytest.approx((0.7, 0.4, 0.3))

@@ -60,7 +60,7 @@ _SHOWN = {"rad": ("deg", degrees(1.0)), "m": ("mm", 1e3)}
 """Units that are shown in the place of SI's, and the factors to them."""
 FILES: Mapping[str, Callable[[Plan, Path], object]] = {
     "plan.json": Plan.save,
-    "move.csv": Plan.save_csv,
+    "move.csv": export_plan,
     "move.c": export_plan,
     "move.h": lambda plan, path: export_plan(plan, path.with_suffix(".c")),
 }

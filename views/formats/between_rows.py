@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from quietarm.models import Expression, JointMotion
 from quietarm.models.dimensions import ANGLE
 from quietarm.ocp import JudgedMotion, Plan
+from quietarm.ocp.planning.move_table import columns_of, times_of
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
-from quietarm.views.formats.move_tables import columns_of, times_of
 from quietarm.views.tips import tip_words
 
 Array = NDArray[np.float64]

@@ -12,13 +12,16 @@ import numpy as np
 
 from quietarm.models import Plant
 from quietarm.models.dimensions import WAY
-from quietarm.models.joint_motion import JointMotion
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import c_comment, c_string
-from quietarm.ocp.joint_words import further_words
-from quietarm.ocp.limits import EXPORT
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
+from quietarm.views.formats.exact_path import (
+    figures_of,
+    path_function,
+    positions_at,
+    title_of,
+)
 from quietarm.views.formats.export_format import (
     DATASET,
     PLAN,
@@ -29,8 +32,7 @@ from quietarm.views.formats.export_format import (
     values_of,
 )
 from quietarm.views.report.templates import templates
-from quietarm.views.report.words import limit_words, move_of, moved, window_words
-from quietarm.views.tips import tip_words
+from quietarm.views.report.words import moved, window_words
 
 if TYPE_CHECKING:
     from quietarm.studies.sweep.library import MoveLibrary
@@ -72,12 +74,8 @@ def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
         versions = moves.record.versions
         between = None
         axes = ()
-        title = f"{moved(task)}, {move_of(task)}"
-        residual = tip_words(moves.residual, task.plant.tip_unit)
-        figures = f"energy {moves.energy:.4g} J, residual {residual} "
-        figures += window_words(task.residual_window)
-        added = further_words(moves.candidate, EXPORT)
-        figures = ", ".join([figures, *added, *limit_words(task)])
+        title = title_of(moves)
+        figures = figures_of(moves)
     else:
         task = moves.grid.task
         versions = moves.store.note("versions")
@@ -90,7 +88,7 @@ def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
     plant = task.plant
     names = plant.joint_names if plant.has_path else ()
     helpers, statements = _path_in_c(moves.profile, plant)
-    ends = [_positions(plant, place) for place in (task.start, task.target)] if names else []
+    ends = [positions_at(plant, place) for place in (task.start, task.target)] if names else []
     texts = templates(keep_trailing_newline=True)
     texts.filters |= {"row": _row, "string": c_string, "comment": c_comment}
     header, source = (
@@ -110,24 +108,12 @@ def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
 
 def _path_in_c(profile: JointProfile, plant: Plant) -> tuple[list[str], str]:
     """Functions that are called, and the statements of the joints' path, by CasADi's generator."""
-    fraction = ca.SX.sym("t")
-    a = ca.SX.sym("a", profile.size)
-    move = ca.SX.sym("move", 3)
-    path = profile.motion(ca.vertsplit(a), fraction, *ca.vertsplit(move), jerk=False)
-    motions = plant.joints(path)
-    orders = zip(*((joint.angle, joint.speed, joint.acceleration) for joint in motions))
-    results = ca.densify(ca.vertcat(*(value for order in orders for value in order)))
     generator = ca.CodeGenerator("path", {"with_export": False})
-    generator.add(ca.Function("path", [fraction, a, move], [results], {"cse": True}))
+    generator.add(path_function(profile, plant))
     text = generator.dump().replace("casadi_real", "double")
     match = _STATEMENTS.search(text)
     assert match is not None
     return _HELPER.findall(text), match[1]
-
-
-def _positions(plant: Plant, place: float) -> list[float]:
-    """Where the joints rest at a place of the path."""
-    return [float(joint.angle) for joint in plant.joints(JointMotion(place, 0.0, 0.0))]
 
 
 def _row(values: Iterable[float]) -> str:

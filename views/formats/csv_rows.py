@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from quietarm.ocp import Plan
-from quietarm.ocp.escapes import csv_table
+from quietarm.ocp.planning.move_table import move_csv
 from quietarm.views.formats.between_rows import note_of_rows
 from quietarm.views.formats.export_format import ExportFormat
-from quietarm.views.formats.move_tables import COLUMNS, RATE, table
+from quietarm.views.formats.row_settings import COLUMNS, RATE
 
 
 class CsvRows(ExportFormat):
@@ -22,7 +22,7 @@ class CsvRows(ExportFormat):
 
     def content(self, plan: Plan, *args: Any, columns: str, rate: float) -> str:
         """A heading, and a row a tick."""
-        return csv_table(table(plan, columns, rate), "%.12g")
+        return move_csv(plan, columns, rate)
 
     def note(self, plan: Plan, *args: Any, columns: str, rate: float) -> str:
         """Say what a controller leaves that interpolates between the rows, if it matters."""

@@ -16,6 +16,7 @@ from quietarm.ocp.checks import (
     failed_in,
     finite,
     forgotten_if_refused,
+    joined,
     known,
     listed,
     object_of,
@@ -23,6 +24,7 @@ from quietarm.ocp.checks import (
     ships,
     unknown,
     whole,
+    with_article,
 )
 
 PLAN = "plan"
@@ -31,6 +33,7 @@ SEVERAL = "several"
 DATASET = "dataset"
 TAKEN = (PLAN, FRONT, SEVERAL, DATASET)
 """Kinds of answers: a plan, a front, several of them at once, the moves of a sweep."""
+_NOUNS = {PLAN: "plan", FRONT: "front", DATASET: "dataset of a sweep"}
 _TAKEN_BY_COMMANDS = (".json", ".png", ".pdf", ".svg", ".zarr", ".tex", ".txt")
 """Endings that commands use for other files."""
 _OPTIONS = ("output", "format", "form", "plans", "plan", "path", "report", "quiet", "help")
@@ -154,6 +157,14 @@ class ExportFormat(ABC):
     pieces: ClassVar[str] = ""
     """The unit of progress if writing takes long, such as frames."""
 
+    @property
+    def taken(self) -> str:
+        """Which answers it takes, in words: a plan, plans or fronts."""
+        nouns = [_NOUNS[kind] for kind in self.takes if kind != SEVERAL]
+        if SEVERAL in self.takes:
+            return joined([f"{noun}s" for noun in nouns], "or")
+        return joined(map(with_article, nouns), "or")
+
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         if "name" in vars(cls):
@@ -208,7 +219,7 @@ class ExportFormat(ABC):
             if name not in own:
                 takers = [form.name for form in takers_of(name)]
                 if takers:
-                    raise ValueError(f"{name} is for {', '.join(takers)}, not for {self.name}")
+                    raise ValueError(f"{name} is for {joined(takers)}, not for {self.name}")
                 raise ValueError(unknown(f"setting of {self.name}", name, own))
         return {
             name: setting.check(given.get(name, setting.default)) for name, setting in own.items()
@@ -238,20 +249,20 @@ class ExportFormat(ABC):
     def refuse_number(self, number: int) -> None:
         """Raise ValueError for several answers if it takes one."""
         if number > 1 and SEVERAL not in self.takes:
-            raise ValueError(f"{self.name} is of one plan, and {number} are given; give one")
+            raise ValueError(f"{self.name} takes {self.taken}, and {number} are given; give one")
 
     def refuse_others(self, answers: Sequence[Any]) -> None:
         """Raise ValueError for answers that it does not take."""
         self.refuse_number(len(answers))
         if not answers:
-            raise ValueError(f"no {self.takes[0]} is given; give one")
+            raise ValueError(f"nothing is given; {self.name} takes {self.taken}: give one")
         for answer in answers:
             kind = PLAN if isinstance(answer, Plan) else FRONT if isinstance(answer, Front) else ""
             if (kind or DATASET) not in self.takes:
-                what = kind or type(answer).__name__
+                what = with_article(kind or type(answer).__name__)
                 raise ValueError(
-                    f"{self.name} is not of a {what}; give {', '.join(self.takes)}, or a file that "
-                    f"ends in one of {endings_of(kind)}"
+                    f"{self.name} takes {self.taken}, and {what} is given; give a file that ends "
+                    f"in one of {endings_of(kind)}"
                 )
 
 

@@ -34,9 +34,9 @@ class GifFilm(ExportFormat):
     takes = (PLAN, SEVERAL)
     pieces = "frames"
     settings = (
-        ExportSetting("speed", 1.0, "Of the clock; 25% is slow motion.", unit="-"),
+        ExportSetting("speed", 1.0, "Playback speed; 25% is slow motion.", unit="-"),
         DEFLECTION_SCALE,
-        ExportSetting("width", 800, "In pixels.", *WIDTHS),
+        ExportSetting("width", 800, "Width in pixels.", *WIDTHS),
         ExportSetting("rate", FRAMES, "Frames in a second [Hz].", unit="Hz"),
     )
 

@@ -30,15 +30,11 @@ def export_plan(
         The move. A page takes a front as well; pages and films take several by what they are
         called.
     path : str or Path
-        The file, whose ending is the format: a table (.csv), C source (.c, with its header beside
-        it), a JointTrajectory of ROS 2 (.yaml), MATLAB v5 (.mat), a film (.gif, .mp4), a page
-        (.html), or a format of one's own (`ExportFormat`).
+        The file, whose ending is the format: that of an `ExportFormat`, quietarm's or your own.
+        `quietarm export --help` and the page "Plan a move" list all.
     **settings : Any
-        What the format may be told, by name. Of a table ``columns``, with units
-        (``"time:ms,angle:deg,torque"``; a robust plan has a column ``tip`` for every scenario); of
-        tables and trajectories ``rate``, rows in a second [Hz]; of a trajectory ``joint``, the
-        joint's name; of a film ``speed``, ``deflection_scale``, ``width`` and ``rate``; of a page
-        ``deflection_scale``.
+        Settings of the format by name, such as ``rate=500`` and ``columns="time:ms,angle:deg"``:
+        the options of `quietarm export` without their hyphens.
 
     Returns
     -------

@@ -9,9 +9,10 @@ import numpy as np
 
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import matlab_names
+from quietarm.ocp.planning.move_table import move_table
 from quietarm.views.formats.between_rows import note_of_rows
 from quietarm.views.formats.export_format import ExportFormat
-from quietarm.views.formats.move_tables import COLUMNS, RATE, table
+from quietarm.views.formats.row_settings import COLUMNS, RATE
 
 
 class MatlabFile(ExportFormat):
@@ -30,7 +31,7 @@ class MatlabFile(ExportFormat):
         from scipy.io import savemat  # slow to load
 
         file = io.BytesIO()
-        rows = table(plan, columns, rate)
+        rows = move_table(plan, columns, rate)
         vectors = dict(zip(matlab_names(rows), rows.values()))
         facts: dict[str, Any] = {
             "coefficients": plan.coefficients,

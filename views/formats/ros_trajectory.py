@@ -8,9 +8,10 @@ import numpy as np
 
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import yaml_string
+from quietarm.ocp.planning.move_table import times_of
 from quietarm.views.formats.between_rows import interpolation_note
 from quietarm.views.formats.export_format import ExportFormat, ExportSetting
-from quietarm.views.formats.move_tables import RATE, times_of
+from quietarm.views.formats.row_settings import RATE
 from quietarm.views.report.templates import templates
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from quietarm.ocp.checks import joined
 from quietarm.ocp.escapes import (
     Markdown,
     code,
@@ -134,7 +135,7 @@ def percents(shares: Sequence[float]) -> str:
 
 def listed(words: Sequence[str]) -> str:
     """Words with commas, and an "and" before the last."""
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+    return joined(words)
 
 
 def _environment() -> Environment:

@@ -11,6 +11,7 @@ import click
 
 from quietarm.models import load_plant_file
 from quietarm.models.units import UNITS, parse_quantity
+from quietarm.ocp.checks import joined
 from quietarm.ocp.files import check_writable, write_whole
 from quietarm.studies.answers.read_answers import load_fronts_and_plans, load_plans
 from quietarm.studies.cli.given import Given
@@ -57,6 +58,15 @@ class ExportCommand(Command):
                 raise click.BadParameter(str(error), ctx=ctx, param_hint=hint) from None
         return super().parse_args(ctx, args)
 
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the formats above the options."""
+        with formatter.section("Formats, by the ending of the file"):
+            formatter.write_dl(
+                [(joined(form.endings), f"{form.meaning}, of {form.taken}") for form in
+                 known_formats().values()]
+            )  # fmt: skip
+        super().format_options(ctx, formatter)
+
     @property
     def own_params(self) -> list[click.Parameter]:
         """The command's own options, and those of the formats."""
@@ -65,9 +75,15 @@ class ExportCommand(Command):
 
 def _format_option() -> click.Option:
     """--format, of standard output."""
-    possible = _to_stdout()
-    words = f"Of standard output: {' or '.join(possible)}. [default: {possible[0]}]"
-    return option("--format", "form", type=Named("format", known_formats), help=words)
+    words = f"The format of standard output. [default: {_to_stdout()[0]}]"
+    none = {form.name: _not_to_stdout(form) for form in known_formats().values()}
+    return option("--format", "form", type=Named("format", _to_stdout, none), help=words)
+
+
+def _not_to_stdout(form: ExportFormat) -> str:
+    """Say that a format cannot go to standard output, and what to do."""
+    instead = f"give a name, such as move{form.endings[0]}"
+    return f"{form.name} cannot go to standard output, only {joined(_to_stdout())}; {instead}"
 
 
 def _value_after(name: str, words: Sequence[str]) -> str | None:
@@ -123,7 +139,7 @@ def _metavar(settings: Sequence[tuple[str, ExportSetting]]) -> str:
            "output."),
 ])  # fmt: skip
 def export(given: Given) -> None:
-    """Write a saved PLAN for a controller (csv, C, ROS 2, MATLAB), as a film (gif, mp4) or a page.
+    """Write a saved PLAN for a controller, as a film or as a page.
 
     The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
     but math.h. The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
@@ -188,14 +204,7 @@ def _format(given: Given) -> ExportFormat:
     if given.output != STDOUT:
         given.refuse(["form"], "is for --output - alone: a file's ending says its format")
         return format_of(given.output)
-    possible = _to_stdout()
-    form = known_formats()[given.form or possible[0]]
-    if not form.to_stdout:
-        raise ValueError(
-            f"{form.name} cannot go to standard output, only {' and '.join(possible)}; give a "
-            f"name, as move{form.endings[0]}"
-        )
-    return form
+    return known_formats()[given.form or _to_stdout()[0]]
 
 
 def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
@@ -204,7 +213,7 @@ def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
         for setting in other.settings:
             takers = [taker.name for taker in takers_of(setting.name)]
             if form.name not in takers:
-                why = f"is for {', '.join(takers)}, not for {form.name}"
+                why = f"is for {joined(takers)}, not for {form.name}"
                 given.refuse([setting.name], why)
     typed = [setting for setting in form.settings if given.typed(setting.name)]
     settings = {setting.name: _read(setting, getattr(given, setting.name)) for setting in typed}

@@ -7,7 +7,7 @@ from two_links import BASE, ELBOW, INERTIAL, SHOULDER, URDF, robot_of, with_elbo
 
 import quietarm as qa
 from quietarm.models.robot.robot_file import limits_of
-from quietarm.views.formats.move_tables import table
+from quietarm.ocp.planning.move_table import move_table
 
 MIMIC = with_elbow('<mimic joint="shoulder" multiplier="-2" offset="0.3"/>')
 SLIDER = f"""<link name="slide">{INERTIAL}</link><joint name="slider" type="prismatic">
@@ -179,7 +179,7 @@ def test_gears_of_followers_bend():
 def test_exports_have_the_followers():
     plant = robot_of(MIMIC).along(qa.GeometricPath.line([0.2], [0.8]))
     plan = qa.evaluate_coefficients(qa.PointToPoint(plant, target=1.0, duration=1.0), [])
-    columns = table(plan, "angle,speed,torque:Nm", 100.0)
+    columns = move_table(plan, "angle,speed,torque:Nm", 100.0)
     assert columns["elbow_angle_rad"] == pytest.approx(0.3 - 2 * columns["angle_rad"])
     assert columns["elbow_speed_rad_s"] == pytest.approx(-2 * columns["speed_rad_s"])
     assert "elbow_torque_Nm" not in columns

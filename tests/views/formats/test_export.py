@@ -160,7 +160,7 @@ def residual_by_small_steps(task, acceleration, speed):
 @pytest.mark.parametrize(
     ("typed", "begins"),
     [
-        ("", "time_s,angle_rad,speed_rad_s,acceleration_rad_s2\n0,"),
+        ("", "time_s,angle_rad,speed_rad_s,acceleration_rad_s2,tip_m,torque_Nm,power_W\n0,"),
         ("--columns time:ms,angle:deg", "time_ms,angle_deg\n0,"),
         ("--format ros", "joint_names:\n- 'joint'\n"),
     ],
@@ -199,7 +199,7 @@ def test_python_writes_films_and_pages_as_the_command_does(plan, tmp_path):
 @pytest.mark.parametrize(
     ("settings", "why"),
     [
-        ({"columns": "time"}, "columns is for csv, mat, not for ros"),
+        ({"columns": "time"}, "columns is for csv and mat, not for ros"),
         ({"rats": 5.0}, r"unknown setting of ros 'rats'; did you mean 'rate'\?"),
         ({"rate": "often"}, "rate is 'often'; give a number in Hz"),
         ({"joint": 3}, "joint is 3; give a text"),

@@ -16,10 +16,19 @@ from hostile import INJECTED, LABEL, NAMES, Hostile
 from matplotlib.figure import Figure
 from rich.console import Console
 from scipy.io import loadmat
+from st_interpreter import Block
 
 import quietarm as qa
 from quietarm.models.robot.urdf.read_urdf import read_urdf
-from quietarm.ocp.escapes import c_comment, csv_table, markdown, one_line, printable, script_json
+from quietarm.ocp.escapes import (
+    c_comment,
+    csv_table,
+    markdown,
+    one_line,
+    printable,
+    script_json,
+    st_comment,
+)
 from quietarm.views import export_plan
 from quietarm.views.explore.by_hand import MoveByHand
 from quietarm.views.explore.live_page import LivePage
@@ -101,6 +110,26 @@ def test_c_holds_the_names_and_runs_nothing_else(plan, tmp_path):
     assert source.isascii() or not set("\u202e\n") & set(source.splitlines()[0])
 
 
+def test_structured_text_holds_the_names_in_comments_and_runs_nothing_else(plan, tmp_path):
+    export_plan(plan, tmp_path / "move.st")
+    text = (tmp_path / "move.st").read_text(encoding="utf-8")
+    code = re.sub(r"\(\*.*?\*\)", "", text, flags=re.S)
+    assert "injected" not in code
+    assert code.isascii()
+    outputs = Block(text)(Execute=True, TimeStep=0.1)
+    assert len(outputs["Position"]) == len(NAMES)
+    for number, name in enumerate(NAMES, 1):
+        assert f"(* joint {number}: {st_comment(name)} [rad] *)\n" in text
+
+
+def test_no_title_ends_a_comment_of_structured_text():
+    for title in [LABEL, *NAMES, "(*)", "*)(*", "(*(*"]:
+        words = st_comment(title)
+        assert not {"*)", "(*"} & {words[k : k + 2] for k in range(len(words))}
+        assert words.replace(" ", "") == one_line(title).replace(" ", "")
+        assert len(words.splitlines()) <= 1
+
+
 def test_no_title_ends_a_comment_of_c():
     for title in [LABEL, *NAMES]:
         words = c_comment(title)
@@ -109,7 +138,7 @@ def test_no_title_ends_a_comment_of_c():
         assert len(words.splitlines()) <= 1
 
 
-def test_both_tables_quote_the_names_and_no_heading_is_a_formula(plan, tmp_path):
+def test_tables_quote_the_names_and_no_heading_is_a_formula(plan, tmp_path):
     plan.save_csv(tmp_path / "plan.csv", 5.0)
     export_plan(plan, tmp_path / "export.csv", rate=5.0, columns="time,angle")
     for name in ("plan.csv", "export.csv"):

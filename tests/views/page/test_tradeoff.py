@@ -241,7 +241,7 @@ def test_of_an_uncertain_task_it_says_whose_residual_it_is(front, task):
 def test_what_does_not_fit_on_a_page_is_refused(front, plan, tmp_path, monkeypatch):
     with pytest.raises(ValueError, match=r"front\.png is no page; end its name in \.html"):
         trade_off(front).save(tmp_path / "front.png")
-    with pytest.raises(ValueError, match=r"csv is not of a front; give plan, or .* \.html"):
+    with pytest.raises(ValueError, match=r"csv takes a plan, and a front is given; give .* \.html"):
         export_plan(front, tmp_path / "move.csv")
     with pytest.raises(ValueError, match=r"is no film; end its name in \.gif or \.mp4"):
         animate(plan).save(tmp_path / "move.html")

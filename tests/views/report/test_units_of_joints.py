@@ -106,7 +106,7 @@ def test_columns_of_joints_that_slide(plan_of, tmp_path):
     assert _headings(csv_text(plan, "angle", 10.0)) == ["x_position_m", "radial-axis_position_m"]
     plan.save_csv(tmp_path / "plan.csv", 10.0)
     header = _headings((tmp_path / "plan.csv").read_text())
-    assert header[1:4] == ["x_position_m", "x_speed_m_s", "x_acceleration_m_s2"]
+    assert header[1:4] == ["x_position_m", "radial-axis_position_m", "x_speed_m_s"]
     assert header[-3:] == ["x_force_N", "radial-axis_force_N", "power_W"]
 
 
@@ -122,7 +122,7 @@ def test_columns_of_a_mixed_robot(plan_of, tmp_path):
     assert _headings(csv_text(plan, "angle", 10.0)) == ["x_position_m", "radial-axis_angle_rad"]
     plan.save_csv(tmp_path / "plan.csv", 10.0)
     header = _headings((tmp_path / "plan.csv").read_text())
-    assert header[4:7] == [
+    assert header[2:7:2] == [
         "radial-axis_angle_rad", "radial-axis_speed_rad_s", "radial-axis_acceleration_rad_s2",
     ]  # fmt: skip
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from math import degrees
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,21 +12,21 @@ from numpy.typing import NDArray
 from quietarm.models import Plant
 from quietarm.models.dimensions import words_of
 from quietarm.models.joint_motion import LINEAR, ROTARY, JointMotion
-from quietarm.ocp import Plan
-from quietarm.ocp.checks import unknown
+from quietarm.ocp.checks import positive, unknown
+from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.joint_words import heading_unit
-from quietarm.ocp.planning.plan import ticks_of_move
-from quietarm.views.formats.export_format import ExportSetting
+
+if TYPE_CHECKING:
+    from quietarm.ocp.planning.plan import Plan
 
 Array = NDArray[np.float64]
-COLUMNS = ExportSetting(
-    "columns", "time,angle,speed,acceleration", "Columns, with units: time:ms,angle:deg,speed,"
-    "acceleration,jerk,tip:mm,torque,power.",
-)  # fmt: skip
-RATE = ExportSetting("rate", 1000.0, "Rows or points in a second [Hz].", unit="Hz")
-"""What formats of rows may be told."""
+USUAL_COLUMNS = "time,angle,speed,acceleration,tip,torque,power"
+"""Columns of a table that is not asked for others."""
+USUAL_RATE = 1000.0
+"""Rows of it in a second [Hz]."""
+_MOST_ROWS = 500_000
 _WAYS: Mapping[str, Mapping[str, float]] = {
-    ROTARY: {"rad": 1.0, "deg": degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},
+    ROTARY: {"rad": 1.0, "deg": math.degrees(1.0), "mrad": 1e3, "rev": 0.5 / np.pi},
     LINEAR: {"m": 1.0, "mm": 1e3},
 }
 
@@ -101,7 +102,12 @@ def columns_of(text: str, plant: Plant) -> dict[str, Units]:
     return columns
 
 
-def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
+def move_csv(plan: Plan, columns: str = USUAL_COLUMNS, rate: float = USUAL_RATE) -> str:
+    """Return a move as comma-separated values under a heading: the one csv of a plan."""
+    return csv_table(move_table(plan, columns, rate), "%.12g")
+
+
+def move_table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """Columns, as `columns_of` reads them, by their headings, as `angle_deg`, at a rate [Hz].
 
     The last row is the first tick at or after arrival. Each of several joints has columns of its
@@ -111,7 +117,6 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     """
     times = times_of(plan, rate)
     motion = plan.sampled(times)
-    tips = _tips(plan, times)
     plant = plan.task.plant
     sample = motion.sample
     values: dict[str, list[Array]] = {
@@ -146,7 +151,7 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
             table |= of_joints(name, units)
             continue
         unit, factor = next(iter(units.values()))
-        for (tip, scenario), column in tips.items():
+        for (tip, scenario), column in _tips(plan, times).items():
             table[f"{_heading(tip, unit)}{scenario}"] = factor * column
     return table
 
@@ -171,3 +176,18 @@ def _tips(plan: Plan, times: Array) -> dict[tuple[str, str], Array]:
 def times_of(plan: Plan, rate: float) -> Array:
     """Times of the rows [s] at a rate [Hz], up to the first at or after arrival."""
     return np.arange(ticks_of_move(plan.task.duration, rate) + 1) / rate
+
+
+def ticks_of_move(duration: float, sample_rate: float) -> int:
+    """Ticks from the start to the first at or after arrival."""
+    ticks = duration * positive("sample rate", sample_rate, "Hz")
+    if ticks < 1e-4:
+        raise ValueError(
+            f"sample rate is {sample_rate:g} Hz, a tick long after the arrival; give a higher rate"
+        )
+    if ticks > _MOST_ROWS:
+        raise ValueError(
+            f"sample rate {sample_rate:g} Hz asks for {ticks:.0f} rows, of at most "
+            f"{_MOST_ROWS}; give at most {_MOST_ROWS / duration:.6g} Hz"
+        )
+    return max(1, math.ceil(ticks - 1e-9))
