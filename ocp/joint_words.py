@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from quietarm.models.joint_motion import MIXED
 from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.judged_motion import JudgedMotion
@@ -20,6 +22,26 @@ def further_words(candidate: JudgedMotion, place: str) -> list[str]:
         for figure in further_figures(place)
         if figure.name in candidate.figures
     ]
+
+
+def spans_in_words(candidates: Sequence[JudgedMotion], place: str) -> list[str]:
+    """Return the range over several motions of each further figure: "RMS torque 0.05 to 0.09 N m".
+
+    A figure that one of the motions lacks is left out.
+    """
+    words = list[str]()
+    for figure in further_figures(place):
+        known = [motion for motion in candidates if figure.name in motion.figures]
+        if known and len(known) == len(candidates):
+            by_size = sorted(known, key=lambda motion: motion.figures[figure.name])
+            first = figure_words(by_size[0], figure)
+            last = figure_words(by_size[-1], figure)
+            plant = known[0].task.plant
+            unit = f" {figure.unit_on(plant)}"
+            low = first.removesuffix(unit) if last.endswith(unit) else first
+            span = last if first == last else f"{low} to {last}"
+            words.append(f"{figure.label_on(plant)} {span}")
+    return words
 
 
 def figure_words(candidate: JudgedMotion, figure: Figure, drawn: bool = False) -> str:

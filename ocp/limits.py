@@ -43,9 +43,13 @@ FRONT = "front"
 FILE = "file"
 EXPORT = "export"
 CAPTION = "caption"
-PLACES = frozenset({REPORT, NOTEBOOK, PAGE, COMPARISON, FRONT, FILE, EXPORT, CAPTION})
+SWEEP = "sweep"
+PLACES = frozenset(
+    {REPORT, NOTEBOOK, PAGE, COMPARISON, FRONT, FILE, EXPORT, CAPTION, SWEEP},
+)
 """Where figures stand: rows of a command, a notebook's table, the page to drag, the table of
-`compare`, csv and tables of a front, `stated` of a file, source that is exported, captions."""
+motions in `compare`, csv and tables of fronts and of a bench, `stated` of a file, source that is
+exported, captions, the dataset of a sweep with its tables and pictures."""
 ValuesOf = Callable[[Sample], Sequence[Expression]]
 """A quantity's values by the sample of a plant."""
 

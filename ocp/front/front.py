@@ -186,6 +186,17 @@ class Front(Answer):
         motions = map(self.judged, self.points)
         return np.array([motion.figures.get(figure.name, np.nan) for motion in motions])
 
+    def figures_within(self, residual: float, place: str) -> dict[str, float]:
+        """Return further figures of the point of least energy within a residual [m], by columns.
+
+        NaN where the front has no such point, or its motion no such figure.
+        """
+        further = further_figures(place)
+        point = self.cheapest_within(residual) if further else None
+        figures = {} if point is None else self.judged(point).figures
+        plant = self.task.plant
+        return {figure.column_on(plant): figures.get(figure.name, np.nan) for figure in further}
+
     def _repr_html_(self) -> str:
         """What a notebook shows."""
         plant = self.task.plant
@@ -321,18 +332,23 @@ class Front(Answer):
             return min(reversed(points), key=_energy)
         if not residual_limit >= 0:  # nor NaN; all of them are below infinity
             raise ValueError(f"residual limit is {residual_limit:g} {unit}; give 0 or more")
-        still = [point for point in points if point.residual <= residual_limit]
-        if not still:
+        cheapest = self.cheapest_within(residual_limit)
+        if cheapest is None:
             raise ValueError(
                 f"no point of the front has a residual of {residual_limit:g} {unit} or less; give "
                 f"at least the smallest residual, {points[0].residual:.3g} {unit}"
             )
-        return min(reversed(still), key=_energy)
+        return cheapest
+
+    def cheapest_within(self, residual: float) -> FrontPoint | None:
+        """Return the point of least energy within a residual [m]; None where there is none."""
+        within = [point for point in self.points if point.residual <= residual]
+        return min(reversed(within), key=_energy, default=None)
 
     def least_energy(self, residual: float) -> float:
         """Least energy [J] of the points within a residual [m]; NaN where there is none."""
-        within = self.energies[self.residuals <= residual]
-        return float(within.min()) if within.size else float("nan")
+        cheapest = self.cheapest_within(residual)
+        return float("nan") if cheapest is None else cheapest.energy
 
     @property
     def coefficients(self) -> NDArray[np.float64]:

@@ -25,6 +25,7 @@ from quietarm.metaheuristics.score import (
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
 from quietarm.ocp.front.points import LEVELS, Entries, beyond
+from quietarm.ocp.limits import FRONT
 from quietarm.studies.bench.running_times import (
     History,
     expected_running_time,
@@ -169,7 +170,8 @@ class Results:
         Of every indicator less is better: ``missing`` is the share of the reference front's
         hypervolume that a run lacks, and there is a column for each of the others; ``energy_``
         columns are energies within a residual above the reference front's, as shares, NaN where the
-        run has none; seconds are processor time, ``seconds`` of the search alone, ``all_seconds``
+        run has none; beside them stand figures of a user's own, of the motions with these energies;
+        seconds are processor time, ``seconds`` of the search alone, ``all_seconds``
         with builds and checks.
         """
         best = {
@@ -383,6 +385,9 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
             row[f"{column}{suffix}"] = told_apart(score) if column == MISSING else score
     for name, level, least in zip(ENERGIES, LEVELS, best):
         row[name] = told_apart(front.least_energy(level) / least - 1)
+        figures = front.figures_within(level, FRONT)
+        at = name.removeprefix("energy_")
+        row |= {f"{column}_{at}": value for column, value in figures.items()}
     return row | {
         "evaluations": last.evaluations,
         "gradients": last.gradients,

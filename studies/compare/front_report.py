@@ -10,6 +10,8 @@ import pandas as pd
 from quietarm.metaheuristics.score import BETWEEN, known_indicators
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
+from quietarm.ocp.figures import Figure, further_figures
+from quietarm.ocp.limits import FRONT
 from quietarm.ocp.objectives import objectives_on
 from quietarm.studies.compare.front_comparison import (
     Comparison,
@@ -101,10 +103,17 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
         for name, indicator in known_indicators().items()
     }
     front = group.runs[0].front
+    figures = {
+        f"{figure.label_on(front.task.plant)} [{figure.unit_on(front.task.plant) or '-'}] "
+        f"within {tip_words(level, tip_unit)}": _spread_of(group, figure, level)
+        for level in comparison.levels
+        for figure in further_figures(FRONT)
+    }
     return {
         "method": group.label,
         "seeds": len(group.runs),
         **energies,
+        **figures,
         **measures,
         _WINDOW: float(front.task.residual_window),
         "points": Spread.of([len(run.front.points) for run in group.runs]).median,
@@ -113,6 +122,13 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
         "iterations": group.spread("front.record.iterations").median or None,
         "time [s]": group.spread("front.record.seconds").median,
     }
+
+
+def _spread_of(group: RunsOfMethod, figure: Figure, level: float) -> str:
+    """Return the spread over runs of a figure of their cheapest motions within a residual [m]."""
+    column = figure.column_on(group.runs[0].front.task.plant)
+    values = [run.front.figures_within(level, FRONT)[column] for run in group.runs]
+    return spread_words(Spread.of(values), f".{figure.digits}g")
 
 
 def _shown(table: pd.DataFrame) -> pd.DataFrame:
@@ -150,6 +166,8 @@ def runs_table(comparison: Comparison) -> pd.DataFrame:
                     f"gap_{at}": run.gaps[i],
                     f"gap_between_{at}": run.gaps_between[i],
                 }
+                figures = front.figures_within(level, FRONT)
+                row |= {f"{column}_{at}": value for column, value in figures.items()}
             for name in ("evaluations", "iterations", "seconds"):
                 row[name] = getattr(record, name)
             rows.append(row)

@@ -12,7 +12,8 @@ import numpy as np
 
 from quietarm.ocp import Solver, SolveStatus, Sqp
 from quietarm.ocp.checks import listed, not_negative, positive, quoted
-from quietarm.ocp.limits import RESIDUAL, TORQUE_SPEED, quantities_of
+from quietarm.ocp.figures import Figure, further_figures
+from quietarm.ocp.limits import RESIDUAL, SWEEP, TORQUE_SPEED, quantities_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, coefficient_bound
 from quietarm.ocp.robustness import OF_MODES
@@ -229,7 +230,20 @@ class Definition:
             variables["front_residual"] = Variable(tip, point, attributes=window)
             variables["front_energy"] = Variable("J", point)
             variables["front_coefficients"] = Variable("1", point | size)
+        taken = (*variables, *self.grid.names, DIGEST)
+        for figure in self.figures:
+            if figure.name in taken:
+                raise ValueError(
+                    f"{figure.name} is a variable of a dataset already; give the figure another "
+                    "name"
+                )
+            variables[figure.name] = Variable(figure.unit_on(task.plant) or "1")
         return variables
+
+    @property
+    def figures(self) -> list[Figure]:
+        """Figures of a user's own that the dataset holds, without peaks, which it holds anyway."""
+        return [figure for figure in further_figures(SWEEP) if not figure.quantity]
 
     def difference(self, other: Definition) -> str:
         """Names of all in which two sweeps differ, and the residual window of the other."""

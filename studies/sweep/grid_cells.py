@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from quietarm.ocp import (
     InfeasibleTaskError,
+    JudgedMotion,
     PointToPoint,
     QuietarmError,
+    SolverFailedError,
     SolveStatus,
     epsilon_front,
     plan_move,
@@ -81,7 +84,26 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
     for name, (energy, residual) in changes.items():
         cells.loc[solved, f"energy_by_{name}"] = energy
         cells.loc[solved, f"residual_by_{name}"] = residual
+    for figure in definition.figures:
+        cells.loc[solved, figure.name] = np.nan
+    for k, task, row in zip(solved, solved_tasks, coefficients):
+        for name, value in _figures(definition, task, row).items():
+            cells.loc[k, name] = value
     return cells
+
+
+def _figures(
+    definition: Definition, task: PointToPoint, coefficients: NDArray[np.float64]
+) -> dict[str, float]:
+    """Return the user's own figures of a planned move, by CVODES; those that it has."""
+    if not definition.figures:
+        return {}
+    figures = JudgedMotion.of_profile(task, definition.profile, coefficients).figures
+    names = [figure.name for figure in definition.figures]
+    try:
+        return {name: figures[name] for name in names if name in figures}
+    except SolverFailedError:  # of CVODES, which has not judged every cell before
+        return {}
 
 
 def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], cold: bool) -> Cells:

@@ -13,6 +13,7 @@ from quietarm.ocp.rest import rest_of
 from quietarm.studies.sweep.definition import STATES, STATUS
 from quietarm.studies.sweep.move_grid import Axis
 from quietarm.studies.sweep.store import Store
+from quietarm.studies.sweep.sweep_rows import figure_spans
 from quietarm.views.pictures.axes import (
     TITLE,
     head,
@@ -62,9 +63,7 @@ def grid_figure(store: Store) -> Figure:
                 words = f"at most {least:g}"
                 ax.text(0.5, 0.5, words, transform=ax.transAxes, ha="center", color="white")
         if (values > least).any():
-            known = values[values > 0]
-            few = known.max() < 1e3 * known.min()
-            ticks = LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
+            ticks = _ticks_of(norm)
             bar = figure.colorbar(ScalarMappable(norm, HEAT), ax=list(panels[:, column]),
                                   ticks=ticks, format="{x:g}")  # fmt: skip
             bar.minorticks_off()
@@ -106,7 +105,8 @@ def _head(figure: Figure, store: Store) -> None:
     """What is seen of a grid: how many cells have a plan, its energies, and what they leave."""
     task = store.definition.grid.task
     plant = ", ".join([moved(task), *limit_words(task)])
-    cells = caption_of_cells(store.read("energy"), store.read("residual"), task)
+    spans = [f"{label} {words}" for label, words in figure_spans(store)]
+    cells = caption_of_cells(store.read("energy"), store.read("residual"), task, spans)
     head(figure, cells, plant)
 
 
@@ -119,7 +119,8 @@ def _over_one(store: Store, axis: Axis) -> Figure:
     without = np.isnan(store.read("energy"))
     for ax, (label, shown, _) in zip(panels, variables):
         ax.plot(values, shown, marker=PLAN.mark, color=PLAN.colour)
-        logarithmic(ax, shown, "y")
+        if not (shown < 0).any():
+            logarithmic(ax, shown, "y")
         ax.plot(values[without], np.full(without.sum(), 0.02), "x", color=RED,
                 transform=ax.get_xaxis_transform())  # fmt: skip
         ax.set_ylabel(label)
@@ -138,6 +139,9 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
         "residual": (residual, scale, rest_of(task) * scale),
         "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
     }
+    for figure in store.figures:
+        unit = figure.unit_on(task.plant)
+        variables[figure.name] = f"{figure.label_on(task.plant)} [{unit or '-'}]", 1.0, -np.inf
     all_variables = [
         (label, np.maximum(factor * store.read(name), least), least)
         for name, (label, factor, least) in variables.items()
@@ -154,13 +158,24 @@ def _words(axes: tuple[Axis, ...], place: tuple[int, ...]) -> str:
 
 
 def _norm(values: Array) -> Normalize:
-    """Colours by the logarithm of what is known and positive."""
-    known = values[np.isfinite(values) & (values > 0)]
+    """Colours by the logarithm of what is known; by the values themselves if one is negative."""
+    finite = values[np.isfinite(values)]
+    if (finite < 0).any():
+        return Normalize(float(finite.min()), float(finite.max()))
+    known = finite[finite > 0]
     if not known.size:
         return Normalize(0.0, 1.0)
     least = float(known.min())
     most = float(known.max())
     return LogNorm(least, most) if most > 1.01 * least else LogNorm(least / 2, 2 * most)
+
+
+def _ticks_of(norm: Normalize) -> LogLocator | None:
+    """The ticks of a logarithmic scale of colours; None for matplotlib's own."""
+    if not isinstance(norm, LogNorm) or norm.vmin is None or norm.vmax is None:
+        return None
+    few = norm.vmax < 1e3 * norm.vmin
+    return LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,))
 
 
 def _states(

@@ -20,8 +20,10 @@ from numpy.typing import NDArray
 from quietarm.interrupts import note_interrupts
 from quietarm.ocp import FileFormatError, QuietarmError
 from quietarm.ocp.checks import cut, install, quoted
+from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.files import unwritable
 from quietarm.ocp.json_text import refuse_repeated
+from quietarm.ocp.limits import SWEEP
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
 from quietarm.studies.sweep.cell_interpolation import find_jumps
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
     import xarray
 
 _FORMAT = "quietarm-sweep"
+_DIGESTED = "variables"
+"""Attribute of the digests: the names of the variables that they are of."""
 
 
 class Store:
@@ -46,11 +50,14 @@ class Store:
             self.dataset = _open(path)
         with _undisturbed(), _damage_told(path):
             self.definition = typed(self.note("sweep"), Definition)
+            added = {figure.name for figure in self.definition.figures}
             self._names = [
                 name
                 for name in self.definition.variables
-                if name != JUMP and (name in self.dataset or not name.startswith(prefix))
+                if name != JUMP
+                and (name in self.dataset or not (name.startswith(prefix) or name in added))
             ]
+            self._digested = self._read_digested()
             self._check_layout()
 
     @classmethod
@@ -60,12 +67,40 @@ class Store:
             with _refusal_told(path):
                 _lay_out(path, definition)
         store = cls(path)
-        if differing := definition.difference(store.definition):
+        differing = ", ".join(
+            filter(None, [definition.difference(store.definition), *store._other_figures()])
+        )
+        if differing:
             raise FileFormatError(
                 f"{path} is of another sweep: it differs in {differing}; give the line of that "
                 "sweep, or another name"
             )
         return store
+
+    def _read_digested(self) -> list[str]:
+        """Return the names of the variables that have digests, in their order.
+
+        A dataset states them, because it may hold figures that are not known here. One of before
+        has digests of the variables that are known.
+        """
+        if not self._has_digests or _DIGESTED not in self.dataset[DIGEST].attrs:
+            return self._names
+        stated = self.dataset[DIGEST].attrs[_DIGESTED]
+        variables = {str(name) for name in self.dataset.data_vars} - {JUMP, DIGEST}
+        names = [*map(str, stated)] if isinstance(stated, list) else []
+        if {*names} != variables or len(names) != len(variables):
+            raise ValueError(f"its digests are of {quoted(stated)}")
+        return names
+
+    def _other_figures(self) -> list[str]:
+        """Return names of figures that are known here or held there, and not both."""
+        known = {figure.name for figure in self.definition.figures}
+        return sorted((known - {*self._names}) | ({*self._digested} - {*self._names}))
+
+    @property
+    def figures(self) -> list[Figure]:
+        """Figures of a user's own, and peaks that are shown, of which the dataset has values."""
+        return [figure for figure in further_figures(SWEEP) if figure.name in self._names]
 
     def _check_layout(self) -> None:
         """Hold axes and variables against what was asked; ValueError where they are others."""
@@ -90,7 +125,7 @@ class Store:
             values = status if name == STATUS else self.dataset[name].to_numpy()
             if name == JUMP or not self._has_digests:
                 return values
-            digests = self.dataset[DIGEST].to_numpy()[:, self._names.index(name)]
+            digests = self.dataset[DIGEST].to_numpy()[:, self._digested.index(name)]
         for digest, chunk in zip(digests.tolist(), self.definition.chunks):
             if (status[chunk] != 0).any() and digest != self._digest_of(values[chunk]):
                 raise FileFormatError(
@@ -132,7 +167,7 @@ class Store:
             for place, value in zip(places, column):
                 place[: np.size(value)] = np.ravel(value)
         if self._has_digests:
-            digests = [self._digest_of(part[name].to_numpy()) for name in self._names]
+            digests = [self._digest_of(part[name].to_numpy()) for name in self._digested]
             digest = self.dataset[[DIGEST]].isel(chunk=[number]).copy(data={DIGEST: [digests]})
             self._write(digest, {"chunk": slice(number, number + 1)})
         for some in (part.drop_vars(STATUS), part[[STATUS]]):
@@ -232,6 +267,7 @@ def _arrays(definition: Definition) -> dict[str, dict[str, Any]]:
         "dtype": np.int64,
         "fill_value": 0,
         "dimension_names": ["chunk", "variable"],
+        "attributes": {_DIGESTED: [name for name in variables if name != JUMP]},
     }
     return arrays
 

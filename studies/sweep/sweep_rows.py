@@ -45,8 +45,22 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
             ("from cold starts", f"at most {max(excess[checked].max(), 0):.1g} of the energy less, "
              f"in {checked.sum()} cells"),
         ]  # fmt: skip
+        rows += figure_spans(store)
         rows += [("jumps", f"after {jumps} cells, to another motion")] * bool(jumps)
     return rows
+
+
+def figure_spans(store: Store) -> list[tuple[str, str]]:
+    """Return the range over the cells of each figure of a user's own, as its label and words."""
+    plant = store.definition.grid.task.plant
+    spans = list[tuple[str, str]]()
+    for figure in store.figures:
+        values = store.read(figure.name)
+        if np.isfinite(values).any():
+            low = f"{np.nanmin(values):.{figure.digits}g}"
+            high = figure.words(float(np.nanmax(values)), plant)
+            spans.append((figure.label_on(plant), f"{low} to {high}"))
+    return spans
 
 
 def cells_along(store: Store) -> list[str]:
@@ -66,10 +80,19 @@ def cells_along(store: Store) -> list[str]:
         for value in residual.tolist()
     ]
     known = np.isfinite(energy)
+    plant = store.definition.grid.task.plant
+    figures = {
+        f"{figure.label_on(plant)} [{figure.unit_on(plant) or '-'}]": [
+            f"{value:.{figure.digits}g}" if np.isfinite(value) else "-"
+            for value in store.read(figure.name).tolist()
+        ]
+        for figure in store.figures
+    }
     cells = {
         f"{axis.name} [{axis.unit}]": [f"{value:.6g}" for value in axis.values],
         "energy [J]": np.where(known, [f"{value:.4g}" for value in energy.tolist()], "-"),
         f"residual [{shown}]": np.where(known, residuals, "-"),
+        **figures,
         "status": [STATES[k] for k in status.tolist()],
     }
     return ["\n", *pandas.DataFrame(cells).to_string(index=False).splitlines()]

@@ -71,19 +71,6 @@ def follow(made_up, done):
     return type_all
 
 
-@pytest.fixture
-def refused(call):
-    """Type a line that must fail in one line; that line."""
-
-    def type_one(line, status=2):
-        code, out, err = call(line)
-        assert (code, out, err.count("\n")) == (status, "", 1)
-        assert err.startswith("quietarm: ")
-        return err
-
-    return type_one
-
-
 def test_every_recipe_has_a_test_and_its_row_in_the_table():
     tested = re.findall(r'follow\("([^"]*)"\)', Path(__file__).read_text())
     assert {*tested} | WITHOUT_A_TEST == {*RECIPES}

@@ -31,6 +31,7 @@ from quietarm.views.pictures.axes import (
 )
 from quietarm.views.pictures.grammar import FAINT, FLOOR, PAPER, Look, looks
 from quietarm.views.pictures.marked_points import mark_points
+from quietarm.views.report.captions import spans_of_fronts
 from quietarm.views.report.method_rows import with_kind
 from quietarm.views.report.words import title_of_picture
 from quietarm.views.tips import tip_scale, tip_words
@@ -207,9 +208,9 @@ def _caption(comparison: Comparison) -> str:
         return f"No front comes within {words}"
     best = min(known, key=lambda name: known[name])
     rest = [f"{name} {energy:.3g} J" for name, energy in known.items() if name != best][:3]
-    return f"Within {words}, {best} takes {known[best]:.3g} J" + "".join(
-        f", {words_of_group}" for words_of_group in rest
-    )
+    energies = ", ".join([f"{best} takes {known[best]:.3g} J", *rest])
+    spans = spans_of_fronts([run.front for run in comparison.runs], level)
+    return f"Within {words}, {energies}{spans}"
 
 
 @interruptible

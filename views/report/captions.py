@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL
-from quietarm.ocp import Floor, Front, Plan, Polish
-from quietarm.ocp.joint_words import further_words
+from quietarm.ocp import Floor, Front, FrontPoint, JudgedMotion, Plan, Polish
+from quietarm.ocp.joint_words import further_words, spans_in_words
 from quietarm.ocp.limits import CAPTION
 from quietarm.ocp.rest import is_at_rest
 from quietarm.ocp.task import PointToPoint
@@ -29,7 +29,7 @@ def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
     said = {name: (motion.energy, _said(motion)) for name, motion in motions.items()}
     residuals = [motion.residual for motion in motions.values()]
     unit = next(iter(motions.values())).task.plant.tip_unit
-    return _caption(said, max(residuals), unit)
+    return _caption(said, max(residuals), unit, [motion.candidate for motion in motions.values()])
 
 
 def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
@@ -47,23 +47,35 @@ def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
         if judged.motion.candidate is not None:
             words = ", ".join([words, *further_words(judged.motion.candidate, CAPTION)])
         said[name] = judged.motion.energy, words
-    return _caption(said, max(residuals), tip_unit)
+    candidates = [judged.motion.candidate for judged in known.values() if judged.motion is not None]
+    judged_by_cvodes = [candidate for candidate in candidates if candidate is not None]
+    return _caption(said, max(residuals), tip_unit, judged_by_cvodes)
 
 
-def _caption(said: Mapping[str, tuple[float, str]], most_left: float, tip_unit: str) -> str:
+def _caption(
+    said: Mapping[str, tuple[float, str]],
+    most_left: float,
+    tip_unit: str,
+    candidates: Sequence[JudgedMotion],
+) -> str:
     if not said:
         return "None of these motions is possible"
     if len(said) > _MOST_SAID:
         energies = [energy for energy, _ in said.values()]
         return (
             f"{len(said)} motions take {min(energies):.3g} to {max(energies):.3g} J; after arrival "
-            f"the tip swings by up to {tip_words(most_left, tip_unit)}"
+            f"the tip swings by up to {tip_words(most_left, tip_unit)}" + _spans(candidates)
         )
     sentences = [
         f"{_named(name)} takes {energy:.3g} J and {words}" for name, (energy, words) in said.items()
     ]
     caption = "; ".join(reversed(sentences))
     return caption[:1].upper() + caption[1:]
+
+
+def _spans(candidates: Sequence[JudgedMotion]) -> str:
+    """The ranges of a user's own figures over several motions, after a semicolon."""
+    return "".join(f"; {words}" for words in spans_in_words(candidates, CAPTION))
 
 
 def _said(motion: Plan | Floor) -> str:
@@ -114,14 +126,21 @@ def caption_of_front(front: Front) -> str:
     cheapest = front.points[-1]
     still = residual_words(stillest.residual, front.task)
     still = "at rest" if still == "rest" else still
-    words = f"{stillest.energy:.3g} J {still}"
+    words = f"{stillest.energy:.3g} J {still}{_further(front, stillest)}"
     if len(front.points) == 1:
         return f"One motion: {words}"
     saved = 100 * (1 - cheapest.energy / stillest.energy)
+    cheap = f"{cheapest.energy:.3g} J with {tip_words(cheapest.residual, tip_unit)}"
     return (
-        f"From {words} to {cheapest.energy:.3g} J with {tip_words(cheapest.residual, tip_unit)}: "
-        f"this vibration saves {saved:.3g} % of the energy"
+        f"From {words} to {cheap}{_further(front, cheapest)}: this vibration saves {saved:.3g} % "
+        "of the energy"
     )
+
+
+def _further(front: Front, point: FrontPoint) -> str:
+    """A user's own figures of a point, in brackets."""
+    words = ", ".join(further_words(front.judged(point), CAPTION))
+    return f" ({words})" if words else ""
 
 
 def caption_of_fronts(fronts: Sequence[Front], level: float = SEARCH_RESIDUAL) -> str:
@@ -135,8 +154,14 @@ def caption_of_fronts(fronts: Sequence[Front], level: float = SEARCH_RESIDUAL) -
         return f"None of {len(fronts)} seeds comes within {within}"
     return (
         f"Within {within}, {len(reached)} of {len(fronts)} seeds take {min(reached):.4g} to "
-        f"{max(reached):.4g} J"
+        f"{max(reached):.4g} J{spans_of_fronts(fronts, level)}"
     )
+
+
+def spans_of_fronts(fronts: Sequence[Front], level: float) -> str:
+    """The ranges of a user's own figures over the cheapest motions within a residual [m]."""
+    points = [(front, front.cheapest_within(level)) for front in fronts]
+    return _spans([front.judged(point) for front, point in points if point is not None])
 
 
 def caption_of_polish(polish: Polish) -> str:
@@ -148,9 +173,12 @@ def caption_of_polish(polish: Polish) -> str:
 
 
 def caption_of_cells(
-    energies: NDArray[np.float64], residuals: NDArray[np.float64], task: PointToPoint
+    energies: NDArray[np.float64],
+    residuals: NDArray[np.float64],
+    task: PointToPoint,
+    more: Sequence[str] = (),
 ) -> str:
-    """How many cells of a grid have a plan, what these take, and what they leave."""
+    """How many cells of a grid have a plan, what these take and leave, and `more` that is said."""
     planned = np.isfinite(energies)
     words = f"{planned.sum()} of {planned.size} moves have a plan"
     if not planned.any():
@@ -158,7 +186,7 @@ def caption_of_cells(
     low = energies[planned].min()
     high = energies[planned].max()
     left = residuals[planned].max()
-    words = f"{words}, of {low:.3g} to {high:.3g} J"
-    if is_at_rest(left, task):
-        return f"{words}; all arrive at rest"
-    return f"{words}; they leave up to {tip_words(float(left), task.plant.tip_unit)}"
+    arrival = "all arrive at rest"
+    if not is_at_rest(left, task):
+        arrival = f"they leave up to {tip_words(float(left), task.plant.tip_unit)}"
+    return "; ".join([f"{words}, of {low:.3g} to {high:.3g} J", arrival, *more])

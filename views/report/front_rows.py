@@ -30,7 +30,6 @@ from quietarm.views.tips import tip_words
 
 def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None) -> list[str]:
     """A front by the gradient, of which so many points were asked for."""
-    levels = {level: front.least_energy(level) for level in LEVELS}
     record = front.record
     tip_unit = front.task.plant.tip_unit
     return [
@@ -39,9 +38,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
         f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
         *_chosen_points(front),
         *(
-            f"  {f'within {tip_words(level, tip_unit)}':14} "
-            f"{f'{energy:.4g} J' if isfinite(energy) else 'none'}"
-            for level, energy in levels.items()
+            f"  {f'within {tip_words(level, tip_unit)}':14} {_within(front, level)}"
+            for level in LEVELS
         ),
         _residual_line(front.task)
         + "; between them more may remain, as quietarm plan says" * bool(front.task.ranges),
@@ -54,6 +52,14 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
             for begin, end in front.gaps
         ),
     ]  # fmt: skip
+
+
+def _within(front: Front, level: float) -> str:
+    """Return the least energy within a residual in words, and further figures of that motion."""
+    point = front.cheapest_within(level)
+    if point is None:
+        return "none"
+    return ", ".join([f"{point.energy:.4g} J", *further_words(front.judged(point), FRONT)])
 
 
 def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str]:
@@ -104,6 +110,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[s
             f"{f'{gain.after:.4g} J':>12}{f'{gain.share:.2%}':>9}"
             for gain in (gains[i] for i in shown)
         ),
+        *_chosen_points(polished),
         _residual_line(polished.task),
         f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
         *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
