@@ -235,7 +235,13 @@ class Robot(MovingRobot):
     @cached_property
     def finer(self) -> Robot:
         """The same robot with its beam on other hinges, by which what is planned is judged."""
-        return self if self.beam is None else replace(self, beam=self.beam.finer)
+        if self.beam is None:
+            return self
+        finer = copy.copy(self)
+        for name in _OF_ALL_PARTS:
+            vars(finer).pop(name, None)
+        finer._set("beam", self.beam.finer)
+        return finer
 
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint, and of what follows it [rad or m]."""
@@ -473,6 +479,10 @@ class Robot(MovingRobot):
                     f"joint {quoted(name)} moves no mass; give the links beyond it an <inertial> "
                     "in the URDF"
                 )
+
+
+_OF_ALL_PARTS = ("unscaled", "mechanism", "dynamics", "digest")
+"""What a robot has computed from its beam as well."""
 
 
 @dataclass(frozen=True)
