@@ -41,6 +41,7 @@ from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.dynamics.robot_parts import Limits
+from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
@@ -162,6 +163,8 @@ class Robot(MovingRobot):
                     "that the path excites"
                 )
             self._set("modes", whole("modes", self.modes, 1, MOST_MODES))
+            if self.beam is not None:
+                self._set("beam", self.beam.for_modes(self.modes))
         self._set("tip", self._tip())
         self._check_base()
         self._check_measured()
@@ -219,13 +222,26 @@ class Robot(MovingRobot):
     def of_saved(cls, entries: Any) -> Any:
         """The entries of a saved robot, such that they mean what they meant to who saved them."""
         if isinstance(entries, dict) and isinstance(entries.get("urdf"), str):
-            return {**entries, "urdf": as_read_before(entries["urdf"])}
+            entries = {**entries, "urdf": as_read_before(entries["urdf"])}
+            if "beam" in entries:
+                entries["beam"] = Beam.of_saved(entries["beam"])
         return entries
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
         """What its files leave open, have wrong or have passed over, in one line each."""
         return (*self.remarks, *notes_of(self))
+
+    @cached_property
+    def finer(self) -> Robot:
+        """The same robot with its beam on other hinges, by which what is planned is judged."""
+        if self.beam is None:
+            return self
+        finer = copy.copy(self)
+        for name in _OF_ALL_PARTS:
+            vars(finer).pop(name, None)
+        finer._set("beam", self.beam.finer)
+        return finer
 
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint, and of what follows it [rad or m]."""
@@ -465,6 +481,10 @@ class Robot(MovingRobot):
                 )
 
 
+_OF_ALL_PARTS = ("unscaled", "mechanism", "dynamics", "digest")
+"""What a robot has computed from its beam as well."""
+
+
 @dataclass(frozen=True)
 class RobotOnPath(Plant):
     """A robot that follows a path; made by `Robot.along`.
@@ -584,8 +604,8 @@ class RobotOnPath(Plant):
 
     @property
     def in_full(self) -> FullRobot:
-        """The equations with all springs, without tables and modes."""
-        return FullRobot(self.robot, self.path, self.stiffness, self.payload)
+        """The equations with all springs, a beam's on other hinges, without tables and modes."""
+        return FullRobot(self.robot, self.robot.finer, self.path, self.stiffness, self.payload)
 
     @property
     def tip_names(self) -> tuple[str, ...]:

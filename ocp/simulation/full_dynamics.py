@@ -78,14 +78,17 @@ def follow_in_full(
     fraction = ca.SX.sym("fraction")
     law = motion.law(ca.vertsplit(given), fraction, jerk=False)
     along = _followed(equations, law, given, fraction, given[-1], mesh.samples)
-    outputs = Compiled(lambda: _torques_and_speeds(equations, law, given, fraction), silent=True)
+    count = len(mesh.samples)
+    outputs = Compiled(
+        lambda: _torques_and_speeds(equations, law, given, fraction, count), silent=True
+    )
     work = 0.0
     peaks = list[Array]()
     try:
         for column in motion.arguments.T:
             (states,) = along(state, column)
             state = states[:, -1]
-            torques, speeds = _at(outputs, states, column, mesh.samples)
+            torques, speeds = np.split(outputs(states, column, mesh.samples[None])[0], 2)
             peaks.append(np.abs(torques).max(axis=1))
             nodes = [
                 _sample(torques[:, 1 + node : -1 : NODES], speeds[:, 1 + node : -1 : NODES])
@@ -100,9 +103,9 @@ def follow_in_full(
         (later,) = after(state, [target])
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion.remedy}") from error
-    tip = Compiled(lambda: _tip(equations), silent=True)
     angles = np.column_stack([rest, later[: equations.springs]])
-    places = _tip_places(tip, target, angles)
+    tips = Compiled(lambda: _tips(equations, angles.shape[1]), silent=True)
+    places = tips(target, angles)[0].T
     away = np.linalg.norm(places[1:] - places[0], axis=1)
     return FullFigures(work, float(away.max()), np.max(peaks, axis=0), state)
 
@@ -149,24 +152,16 @@ CVODES = {
 
 
 def _torques_and_speeds(
-    equations: FullEquations, path: JointMotion, given: ca.SX, fraction: ca.SX
+    equations: FullEquations, path: JointMotion, given: ca.SX, fraction: ca.SX, samples: int
 ) -> ca.Function:
-    """(state, given, fraction) -> torques and speeds of the joints, in a column."""
-    count = equations.springs
-    state = ca.SX.sym("state", 2 * count)
-    torques = equations.torques(path, state[:count], state[count:])
+    """(states, given, fractions) -> torques and speeds of the joints, a column a sample."""
+    springs = equations.springs
+    state = ca.SX.sym("state", 2 * springs)
+    torques = equations.torques(path, state[:springs], state[springs:])
     speeds = ca.vertcat(*(joint.speed for joint in equations.joints(path)))
     outputs = [ca.densify(ca.vertcat(torques, speeds))]
-    return ca.Function("outputs", [state, given, fraction], outputs, {"cse": True})
-
-
-def _at(outputs: Compiled, states: Array, given: Array, fractions: Array) -> tuple[Array, Array]:
-    """Torques and speeds of the joints at every sample, shape (joints, samples)."""
-    columns = [
-        outputs(state, given, fraction)[0].ravel() for state, fraction in zip(states.T, fractions)
-    ]
-    torques, speeds = np.split(np.array(columns).T, 2)
-    return torques, speeds
+    once = ca.Function("output", [state, given, fraction], outputs, {"cse": True})
+    return once.map("outputs", "serial", samples, [1], [])
 
 
 def _sample(torques: Array, speeds: Array) -> Sample:
@@ -184,17 +179,13 @@ def _sample(torques: Array, speeds: Array) -> Sample:
     )
 
 
-def _tip(equations: FullEquations) -> ca.Function:
-    """(place, angles of the springs) -> where the tip is."""
+def _tips(equations: FullEquations, states: int) -> ca.Function:
+    """(place, angles of the springs) -> where the tip is, a column a state, of the joints at rest."""
     place = ca.SX.sym("place")
     angles = ca.SX.sym("angles", equations.springs)
     origin = equations.tip(JointMotion(place, 0.0, 0.0), angles)
-    return ca.Function("tip", [place, angles], [ca.densify(origin)], {"cse": True})
-
-
-def _tip_places(tip: Compiled, place: float, angles: Array) -> Array:
-    """Of many states with the joints at rest, shape (states, 3)."""
-    return np.array([tip(place, column)[0].ravel() for column in angles.T])
+    once = ca.Function("tip", [place, angles], [ca.densify(origin)], {"cse": True})
+    return once.map("tips", "serial", states, [0], [])
 
 
 def times_after(window: float, fastest: float) -> Array:

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.robot_parts import RobotParts
@@ -85,6 +86,11 @@ class Mechanism:
     def spring_names(self) -> list[str]:
         """Of the sprung joints."""
         return [self.bodies[number].joint for number in self.sprung]
+
+    @property
+    def springs_of_beam(self) -> NDArray[np.bool_]:
+        """Which of the springs are hinges of the beam."""
+        return np.array([self.bodies[number].of_beam for number in self.sprung], bool)
 
     def stiffened(self, factor: float) -> Mechanism:
         """The same with so many times its stiffness, its damping ratios kept."""

@@ -1,7 +1,7 @@
 """A beam at a robot's link, as rigid pieces between sprung hinges.
 
-A hinge in the middle of each of equal parts bends as that part does; half a part is clamped, and
-half of one carries the tip. The chain is a little too stiff: by a share of the square of a part.
+The first piece is clamped, and the last one carries the tip. The hinges are where and as stiff as
+it takes for the frequencies to be those of the beam.
 """
 
 from __future__ import annotations
@@ -10,19 +10,29 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any, Literal
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 
 from quietarm.models.beam_modes import beam_modes
 from quietarm.models.joint_motion import Array
 from quietarm.models.number_checks import not_negative, positive, quoted, whole
+from quietarm.models.robot.elastic.hinges import (
+    Hinges,
+    exact_hinges,
+    hinges_in_the_middle,
+    masses_of_chain,
+)
 from quietarm.models.robot.elastic.spectra import spectrum
 from quietarm.models.robot.urdf.read_urdf import Inertia
 
-USUAL_PIECES = 6
+USUAL_HINGES = 5
+"""The least number by which the third frequency is within 2 % as well."""
 MOST_PIECES = 20
-_ACCURATE = 0.005
-"""Share by which a frequency of the chain may be another than the beam's."""
+EXACT = "exact"
+MIDDLE = "middle"
+"""Where hinges are: such that frequencies are exact, or in the middle of equal parts."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +54,16 @@ class Beam:
     damping : float
         Damping ratio of its first mode when it is clamped; it is proportional to the stiffness.
     pieces : int, optional
-        How many parts; by default six, or as many more as bring its first two frequencies, clamped
-        and with the tip's mass, within 0.5 % of Euler and Bernoulli's.
+        How many of them hang on hinges: by default five, or as many more as the robot's modes need.
+        Whatever it is, from two on its first two frequencies, clamped and with the tip's mass, are
+        Euler and Bernoulli's.
     bending_stiffness : float or (float, float), optional
         In place of section and modulus [N m^2]; two where it bends along x otherwise than along y.
     mass_per_length : float, optional
         In place of section and density [kg/m].
+    hinges : str
+        Where they are: `exact`, or `middle`, as version 2.0.0 had them, in the middle of equal
+        parts, which with six pieces are too stiff by 0.4 % in the first frequency.
 
     Raises
     ------
@@ -68,6 +82,7 @@ class Beam:
     pieces: int | None = None
     bending_stiffness: tuple[float, float] | None = None
     mass_per_length: float | None = None
+    hinges: Literal["exact", "middle"] = EXACT
 
     def __post_init__(self) -> None:
         if not isinstance(self.at, str) or not self.at:
@@ -115,8 +130,18 @@ class Beam:
                 f"damping of the beam is {100 * damping:g} %; give a ratio below 1, as 0.005"
             )
         object.__setattr__(self, "damping", damping)
-        pieces = self._enough() if self.pieces is None else self.pieces
-        object.__setattr__(self, "pieces", whole("pieces of the beam", pieces, 1, MOST_PIECES))
+        if self.hinges not in (EXACT, MIDDLE):
+            raise ValueError(f"hinges of the beam are {quoted(self.hinges)}; give {EXACT}")
+        if self.pieces is not None:
+            pieces = whole("pieces of the beam", self.pieces, 1, MOST_PIECES)
+            object.__setattr__(self, "pieces", pieces)
+
+    @classmethod
+    def of_saved(cls, entries: Any) -> Any:
+        """The entries of a saved beam; one of version 2.0.0 has its hinges where they were."""
+        if isinstance(entries, dict) and "hinges" not in entries:
+            return {**entries, "hinges": MIDDLE}
+        return entries
 
     @property
     def stiffness(self) -> tuple[float, float]:
@@ -142,20 +167,31 @@ class Beam:
 
     @property
     def count(self) -> int:
-        """How many parts."""
-        assert self.pieces is not None
-        return self.pieces
+        """How many hinges for each direction."""
+        return USUAL_HINGES if self.pieces is None else self.pieces
+
+    @property
+    def mass_ratio(self) -> float:
+        """The mass at the tip, in shares of the beam's own."""
+        return self.tip_mass / (self.line_mass * self.length)
+
+    @property
+    def chain(self) -> Hinges:
+        """The hinges of a beam of length 1."""
+        if self.hinges == MIDDLE:
+            return hinges_in_the_middle(self.count)
+        return exact_hinges(self.count, self.mass_ratio)
 
     @property
     def places(self) -> Array:
         """Of the hinges along the beam [m]."""
-        return self.length * (np.arange(self.count) + 0.5) / self.count
+        return self.length * self.chain.places
 
     @property
     def springs(self) -> Array:
-        """Of the hinges [N m/rad], shape (pieces, 2): about x, which bends it along y; about y."""
+        """Of the hinges [N m/rad], shape (hinges, 2): about x, which bends it along y; about y."""
         along_x, along_y = self.stiffness
-        return np.tile([along_y, along_x], (self.count, 1)) * self.count / self.length
+        return np.outer(1 / (self.length * self.chain.compliances), [along_y, along_x])
 
     @property
     def bodies(self) -> list[Inertia]:
@@ -167,11 +203,16 @@ class Beam:
         return bodies
 
     def _piece(self, length: float) -> Inertia:
-        """A piece of this length [m], from its beginning."""
+        """A piece of this length [m], from its beginning.
+
+        Its section turns about the beam alone: Euler and Bernoulli's does not where it bends. Of
+        version 2.0.0 it does.
+        """
         mass = self.line_mass * length
         width = self.width or 0.0
         height = self.height or 0.0
-        squares = (length**2 + width**2, length**2 + height**2, width**2 + height**2)
+        across = (0.0, 0.0) if self.hinges == EXACT else (width**2, height**2)
+        squares = (length**2 + across[0], length**2 + across[1], width**2 + height**2)
         return Inertia(mass, np.array([0.0, 0.0, length / 2]), np.diag(squares) * mass / 12)
 
     def frequencies(self, along: int) -> Array:
@@ -182,25 +223,37 @@ class Beam:
 
     def exact_frequencies(self, along: int) -> Array:
         """The first two of Euler and Bernoulli's beam [rad/s], likewise."""
-        modes = beam_modes(2, self.tip_mass / (self.line_mass * self.length), 0.0)
+        modes = beam_modes(2, self.mass_ratio, 0.0)
         scale = math.sqrt(self.stiffness[along] / self.line_mass) / self.length**2
         return scale * np.array(modes.wave_numbers, dtype=float) ** 2
 
-    @property
-    def excess(self) -> float:
-        """Largest share by which the first two frequencies, of both planes, are not exact."""
-        chain = np.concatenate([self.frequencies(along)[:2] for along in (0, 1)])
-        exact = np.concatenate(
-            [self.exact_frequencies(along)[: len(chain) // 2] for along in (0, 1)]
-        )
-        first_two = np.argsort(exact)[:2]
-        return float(np.abs(chain / exact - 1)[first_two].max())
+    def for_modes(self, count: int) -> Beam:
+        """The same with as many hinges as so many modes need, if their number was not given."""
+        needed = max(USUAL_HINGES, math.ceil(count / 2) + _HINGES_BEYOND)
+        if self.pieces is not None or needed == USUAL_HINGES:
+            return self
+        return replace(self, pieces=needed)
 
-    def _enough(self) -> int:
-        """The least number of pieces from six on that is accurate."""
-        numbers = range(USUAL_PIECES, MOST_PIECES + 1)
-        accurate = (number for number in numbers if replace(self, pieces=number).excess < _ACCURATE)
-        return next(accurate, MOST_PIECES)
+    @property
+    def finer(self) -> Beam:
+        """The same with another number of hinges, exact ones, by which a plan is judged."""
+        count = self.count + 1 if self.count < MOST_PIECES else self.count - 1
+        return replace(self, pieces=count, hinges=EXACT)
+
+    def angles_of(self, other: Beam) -> Array:
+        """Angles of the hinges of another cut of this beam by those of this one.
+
+        Both bend the same: the curvature is a polynomial through this one's hinges.
+
+        Returns
+        -------
+        ndarray, shape (hinges of the other, hinges of this one)
+        """
+        mine, others = self.chain, other.chain
+        degree = min(self.count, _TERMS) - 1
+        here, there = (legvander(2 * chain.places - 1, degree) for chain in (mine, others))
+        curvatures = there @ np.linalg.pinv(here)
+        return others.compliances[:, None] * curvatures / mine.compliances
 
     @property
     def damping_time(self) -> float:
@@ -210,15 +263,21 @@ class Beam:
 
     def _masses(self, axis: int) -> Array:
         """Mass matrix of the hinges' angles about one axis, for small ones [kg m^2]."""
-        places = self.places
-        masses = np.zeros((self.count, self.count))
-        for count, (place, body) in enumerate(zip(places, self.bodies[1:]), start=1):
-            arms = place + body.centre[2] - places[:count]
-            turning = np.full((count, count), body.moments[axis, axis])
-            masses[:count, :count] += body.mass * np.outer(arms, arms) + turning
-        return masses
+        scale = self.line_mass * self.length**3
+        masses = scale * masses_of_chain(self.chain.places, self.mass_ratio)
+        if self.hinges == EXACT:
+            return masses
+        # the sections of each piece turn with it
+        size = (self.width or 0.0, self.height or 0.0)[axis]
+        of_pieces = self.line_mass * np.diff([*self.places, self.length]) * size**2 / 12
+        on = np.tril(np.ones((self.count, self.count)))
+        return masses + on.T @ np.diag(of_pieces) @ on
 
 
+_HINGES_BEYOND = 2
+"""More than modes of one plane that are followed."""
+_TERMS = 8
+"""Of the polynomial of a curvature: the slowest modes need no more."""
 _OF_MATERIAL = {
     "width": "m", "height": "m", "youngs_modulus": "Pa", "density": "kg/m^3",
     "mass_per_length": "kg/m",

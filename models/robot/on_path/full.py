@@ -1,4 +1,7 @@
-"""A robot on its path by its whole equations: every spring, nonlinear, without tables and modes."""
+"""A robot on its path by its whole equations: every spring, nonlinear, without tables and modes.
+
+A beam has other hinges than the one that the motion is planned with.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +27,10 @@ class FullRobot:
 
     Parameters
     ----------
+    planned : Robot
+        Whose modes are planned with; its tables are not used.
     robot : Robot
-        What moves; its tables are not used.
+        What moves: the same with its beam on other hinges.
     path : GeometricPath
         Where its joints go.
     stiffness, payload : float
@@ -33,8 +38,14 @@ class FullRobot:
     """
 
     def __init__(
-        self, robot: MovingRobot, path: GeometricPath, stiffness: float, payload: float
+        self,
+        planned: MovingRobot,
+        robot: MovingRobot,
+        path: GeometricPath,
+        stiffness: float,
+        payload: float,
     ) -> None:
+        self._planned = planned
         self._robot = robot
         self._whole_path = path
         self._path = path.extended
@@ -91,9 +102,10 @@ class FullRobot:
         state : ndarray, shape (2 * springs,)
             Angles of the springs [rad, or m], and their rates.
         """
-        numbers = modes_on(self._robot, self._whole_path)
-        reduction = Reduction(self._robot.dynamics, self._tip, self._whole_path, numbers)
-        shapes = reduction.shapes
+        planned = self._planned
+        numbers = modes_on(planned, self._whole_path)
+        reduction = Reduction(planned.dynamics, planned.tip_place, self._whole_path, numbers)
+        shapes = self._as_bent(planned) @ reduction.shapes
         sag = self.at_rest(place)
         positions = np.concatenate([self._path([place])[0], sag])
         driven = self._dynamics.driven
@@ -102,6 +114,22 @@ class FullRobot:
         angles, rates = np.split(state, 2)
         moving = np.column_stack([angles - sag, rates])
         return np.linalg.solve(along @ shapes, along @ moving).T.ravel()
+
+    def _as_bent(self, planned: MovingRobot) -> Array:
+        """Angles of this robot's springs by those of the one that is planned with.
+
+        All but the hinges of a beam are the same; these bend it the same.
+        """
+        here, there = self._robot.beam, planned.beam
+        if here is None or there is None:
+            return np.eye(self.springs)
+        of_beam = self._robot.mechanism.springs_of_beam
+        of_planned = planned.mechanism.springs_of_beam
+        angles = np.zeros((len(of_beam), len(of_planned)))
+        angles[np.ix_(~of_beam, ~of_planned)] = np.eye(np.count_nonzero(~of_beam))
+        # about x and about y in turn
+        angles[np.ix_(of_beam, of_planned)] = np.kron(there.angles_of(here), np.eye(2))
+        return angles
 
     def _torques(
         self, path: JointMotion, angles: ca.SX, rates: ca.SX, accelerations: ca.SX
