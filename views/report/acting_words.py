@@ -18,7 +18,8 @@ def acting_words(motion: JudgedMotion) -> str:
     """When the tip stays within the task's band: "may act after 0.88 s: within 0.1 mm for ..."."""
     task = motion.task
     acting = motion.acting
-    assert acting is not None and task.band is not None
+    assert acting is not None
+    assert task.band is not None
     band = tip_words(task.band, "m")
     errors = ranges_words(task.ranges)
     if not math.isfinite(acting.after):
