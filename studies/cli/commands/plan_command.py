@@ -22,6 +22,7 @@ from quietarm.ocp import (
     fastest_move,
     plan_move,
 )
+from quietarm.ocp.off_model import off_model
 from quietarm.ocp.planning.correct import refuse_correction
 from quietarm.ocp.planning.named_profiles import chooses_terms, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -53,6 +54,7 @@ from quietarm.studies.cli.robot_options import line_note
 from quietarm.studies.cli.types import INPUT
 from quietarm.views import pictures
 from quietarm.views.report.acting_words import band_lines
+from quietarm.views.report.off_words import off_words
 from quietarm.views.report.plan_rows import floor_rows, plan_rows, sensitivity_rows
 
 FREE = {"free": False, "free-smooth": True}
@@ -133,7 +135,19 @@ def plan(given: Given) -> None:
             straightness = line_note(given, task.plant)
             if straightness is not None:
                 answer = replace(answer, notes=[straightness, *answer.notes])
-    finish_motion(answer, given.output, sensitivities=given.sensitivities)
+    finish_motion(_with_errors(answer), given.output, sensitivities=given.sensitivities)
+
+
+def _with_errors(answer: FoundMotion) -> FoundMotion:
+    """With what the motion of a certain task leaves where the plant is off its model."""
+    motion = answer.motion
+    if motion.task.ranges:
+        return answer
+    try:
+        words = off_words(off_model(motion.candidate), motion.task.plant.tip_unit)
+    except (ValueError, SolverFailedError) as error:
+        words = f"what is left if the frequency is off was not computed: {error}"
+    return replace(answer, notes=[words, *answer.notes])
 
 
 def _refuse_meaningless(given: Given) -> None:
