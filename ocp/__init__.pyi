@@ -33,6 +33,9 @@ from .front.points import non_dominated as non_dominated
 from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
+from .front.time_front import TimedPoint as TimedPoint
+from .front.time_front import TimeFront as TimeFront
+from .front.time_front import time_front as time_front
 from .front.weighted import weighted_front as weighted_front
 from .judged_motion import JudgedMotion as JudgedMotion
 from .limits import QUANTITIES as QUANTITIES

@@ -257,10 +257,19 @@ SOLVER = solver_options()
 """What describes a solver: a command with these has `Given.read_solver`."""
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
-OBJECTIVES = option("--objectives", type=Parsed("names", parse_objectives),
-                    default=",".join(RESIDUAL_AND_ENERGY), metavar="NAME,NAME,...",
-                    help="residual, energy and peaks beside them, as residual,energy,peak-torque; "
-                    "quietarm list objectives has them.")  # fmt: skip
+
+
+def objectives_option(
+    parse: Callable[[str], tuple[str, ...]] = parse_objectives, more: str = ""
+) -> click.Option:
+    """--objectives; a command may have `more` to say of them."""
+    return option("--objectives", type=Parsed("names", parse),
+                  default=",".join(RESIDUAL_AND_ENERGY), metavar="NAME,NAME,...",
+                  help="residual, energy and peaks beside them, as residual,energy,peak-torque; "
+                  f"quietarm list objectives has them.{more}")  # fmt: skip
+
+
+OBJECTIVES = objectives_option()
 NOISE = (
     option("--noise", type=Parsed("share", parse_noise), default="0", metavar="SHARE",
            help="Noise of residual and energy, a standard deviation as 1%: a simulator with "

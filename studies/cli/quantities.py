@@ -27,6 +27,7 @@ from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
+from quietarm.ocp.front.time_front import TIME_AND_ENERGY
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.ocp.objectives import checked_objectives
 from quietarm.ocp.task import OF_MOVES
@@ -329,6 +330,16 @@ def _of_column(quantity: str) -> Mapping[str, float]:
 def parse_objectives(text: str) -> tuple[str, ...]:
     """Read names of objectives: ``residual,energy,peak-torque``."""
     return checked_objectives(text.split(","))
+
+
+def parse_objectives_of_front(text: str) -> tuple[str, ...]:
+    """Read names of objectives, also ``time,energy``."""
+    names = [name.strip().lower() for name in text.split(",")]
+    if "time" not in names:
+        return parse_objectives(text)
+    if sorted(names) != sorted(TIME_AND_ENERGY):
+        raise ValueError(f"objectives are {text}; time is weighed against energy: give time,energy")
+    return TIME_AND_ENERGY
 
 
 def parse_noise(text: str) -> float:

@@ -28,7 +28,10 @@ def acting_words(motion: JudgedMotion) -> str:
     knows_its_way = task.plant.has_path or task.plant.tip_reach is not None
     if knows_its_way or acting.after > task.duration:
         return words
-    return f"{words}; {task.plant.name} does not say where its tip goes, taken to arrive with it"
+    return (
+        f"{words}; {task.plant.name} does not say where its tip goes with the joint, so that it is "
+        "taken to arrive with it"
+    )
 
 
 def ranges_words(ranges: Mapping[str, float]) -> str:

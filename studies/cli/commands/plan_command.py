@@ -24,6 +24,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.off_model import off_model
 from quietarm.ocp.planning.correct import refuse_correction
+from quietarm.ocp.planning.default_jerk import DRIVE_RISES, with_default_jerk
 from quietarm.ocp.planning.named_profiles import chooses_terms, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.task import OF_MOVES
@@ -123,6 +124,7 @@ def plan(given: Given) -> None:
             smooth = FREE[given.profile]
             answer = _find_free_motion(task, smooth=smooth, starts=given.starts, **solves)
         elif fastest:
+            task = _with_jerk(given, task)
             answer = _find_fastest(task, profile, **within, **solves)
         else:
             answer = _find_least_energy(task, profile, starts=given.starts, **within, **solves)
@@ -205,6 +207,19 @@ def _find_free_motion(task: PointToPoint, *, solver: Solver, **settings: Any) ->
         with suppress(SolverFailedError):
             beside = plan_move(task, solver=solver)
     return FoundMotion(floor, beside=beside)
+
+
+def _with_jerk(given: Given, task: PointToPoint) -> PointToPoint:
+    """The task of a fastest move with a limit of its jerk: its own, or a default that is said."""
+    limited = with_default_jerk(task)
+    if limited is not task:
+        limit = limited.limit_of("jerk")
+        given.remarks.append(
+            f"the {limit} is taken, as none is given: a plain cycloid's peak acceleration within "
+            f"{1e3 * DRIVE_RISES:g} ms, which a position loop of 70 Hz follows; give the drive's "
+            "own by --jerk-limit"
+        )
+    return limited
 
 
 def _find_fastest(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> FoundMotion:
