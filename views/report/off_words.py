@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from quietarm.ocp.off_model import OffModel
+from quietarm.ocp.record import REST
 from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.views.tips import tip_scale
 
@@ -24,4 +25,5 @@ def off_words(off: OffModel, tip_unit: str) -> str:
 
 def _lengths(sizes: list[float], tip_unit: str) -> str:
     shown, factor = tip_scale(tip_unit)
-    return f"{', '.join(f'{factor * size:.2g}' for size in sizes)} {shown}"
+    seen = [size if size > REST else 0.0 for size in sizes]
+    return f"{', '.join(f'{factor * size:.2g}' for size in seen)} {shown}"
