@@ -98,6 +98,19 @@ def build_uncertainty(
     return Uncertainty(ranges) if ranges else None
 
 
+def floor_words(kind: Kind, errors: Iterable[tuple[str, float]]) -> list[str]:
+    """Frequencies for which `MEASURED` stands for more than the recordings show, in words."""
+    if not isinstance(kind, Identified) or MEASURED not in dict(errors):
+        return []
+    shown = kind.errors
+    return [
+        f"{name} is {100 * shown[name]:.2g} % uncertain by the recordings, and {100 * size:g} % "
+        "here, as another day or the servo in place of the brake shows more"
+        for name, size in kind.ranges.items()
+        if size > shown[name]
+    ]
+
+
 def uncertainty_of_band(kind: Kind, changed: Collection[str]) -> tuple[Uncertainty, str]:
     """The errors for which a tip stays in its band where none are typed, and why these in words."""
     usual = Uncertainty(RANGE_OF_BAND)

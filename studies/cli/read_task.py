@@ -19,6 +19,7 @@ from quietarm.studies.cli.plants import (
     build_plant,
     build_uncertainty,
     choose_kind,
+    floor_words,
     parameters_of,
     uncertainty_of_band,
     warn_of_notes,
@@ -131,6 +132,7 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
     parameters = parameters_of(kind, given.parameters)
     plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
     uncertainty = build_uncertainty(kind, given.errors, parameters)
+    given.remarks += floor_words(kind, given.errors)
     values = dict(parameters)
     for name in OF_MOVES:
         values[name] = (known[name],) if name in known else _needed(given, name, plant)

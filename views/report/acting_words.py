@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from quietarm.ocp import Plan
+from quietarm.ocp import Front, Plan, PointToPoint
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.views.tips import tip_words
 
 if TYPE_CHECKING:
-    from quietarm.ocp.judged_motion import JudgedMotion
+    from quietarm.machine.recordings.recorded_path import RecordedPath
 
 
 def acting_words(motion: JudgedMotion) -> str:
@@ -42,6 +43,25 @@ def ranges_words(ranges: Mapping[str, float]) -> str:
         return f"for frequency errors up to {100 * ranges[FREQUENCY]:.3g} %"
     parts = [f"{name} up to {100 * size:.3g} %" for name, size in ranges.items()]
     return f"for errors of {' and of '.join(parts)}"
+
+
+def path_lines(task: PointToPoint, path: RecordedPath) -> list[str]:
+    """The first line of the answer of a recorded path with a band; none without one."""
+    if task.band is None:
+        return []
+    return [acting_words(JudgedMotion.of_free_motion(task, path.motion))]
+
+
+def band_lines_of_front(front: Front) -> list[str]:
+    """The first line of a front whose task has a band: of its cheapest motion that keeps it."""
+    limit = front.task.band_limit
+    if limit is None:
+        return []
+    within = [point for point in front.points if point.residual <= limit]
+    if not within:
+        return [f"no motion leaves less than {tip_words(limit, 'm')}, the band over its margin"]
+    point = min(within, key=lambda point: point.energy)
+    return [f"{acting_words(front.judged(point))}, by {point.energy:.4g} J"]
 
 
 def band_lines(plan: Plan) -> list[str]:

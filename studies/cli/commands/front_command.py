@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
@@ -38,10 +36,11 @@ from quietarm.studies.cli.outputs import (
 from quietarm.studies.cli.quantities import parse_objectives_of_front, parse_weights
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
+from quietarm.views.report.acting_words import band_lines_of_front
 from quietarm.views.report.front_rows import failure_lines, gradient_lines, polish_lines
 from quietarm.views.report.time_rows import time_front_lines
 
-_METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
+_METHODS = {"epsilon": epsilon_front, "weighted": weighted_front}
 _DURATIONS = 9
 """Points of a front of time and energy where none are asked for: each is a robust plan."""
 _SEARCHES = {
@@ -109,6 +108,8 @@ def front(given: Given) -> None:
     solver = given.read_solver()
     total = len(given.weights) or given.points
     options = given.pick(wanted, "bound", "starts", "seed")
+    if given.method == "epsilon":
+        options["at"] = LEVELS if task.band_limit is None else (*LEVELS, task.band_limit)
     if given.objectives != RESIDUAL_AND_ENERGY:
         options |= given.pick("objectives")
     with counting(total, wanted) as report:
@@ -131,7 +132,8 @@ def front(given: Given) -> None:
         with counting(checked_points, "checked points") as report:
             checked = cross_check(solution, checked_points=checked_points, report=report)
     files = answer_files(given.output, lambda: pictures.front_figure([solution]), solution)
-    return finish(files, *gradient_lines(solution, points, checked))
+    lines = gradient_lines(solution, points, checked)
+    return finish(files, *band_lines_of_front(solution), *lines, *given.remarks)
 
 
 def _of_time(given: Given) -> None:
