@@ -1,3 +1,7 @@
+from .acting import Acting as Acting
+from .acting import time_to_act as time_to_act
+from .acting import time_to_act_by_samples as time_to_act_by_samples
+from .acting import worst_time_to_act as worst_time_to_act
 from .energy import AbsolutePower as AbsolutePower
 from .energy import CopperLoss as CopperLoss
 from .energy import Energy as Energy
@@ -29,6 +33,9 @@ from .front.points import non_dominated as non_dominated
 from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
+from .front.time_front import TimedPoint as TimedPoint
+from .front.time_front import TimeFront as TimeFront
+from .front.time_front import time_front as time_front
 from .front.weighted import weighted_front as weighted_front
 from .judged_motion import JudgedMotion as JudgedMotion
 from .limits import QUANTITIES as QUANTITIES

@@ -97,9 +97,9 @@ def refuse_formats(output: Sequence[Path], but: Sequence[str], answers: str) -> 
     for path in output:
         written = ending_of(path) in but
         if not written and all(path.suffix.lower() not in f.endings for f in formats_of(answers)):
-            listed = ", ".join(form.endings[0] for form in formats_of(answers))
-            own = ", ".join(_NAMES.get(kind, kind) for kind in but)
-            raise ValueError(f"{path} cannot hold a {answers}; give {own}, {listed}")
+            known = [_NAMES.get(kind, kind) for kind in but]
+            known += [form.endings[0] for form in formats_of(answers)]
+            raise ValueError(f"{path} cannot hold a {answers}; give {', '.join(known)}")
 
 
 REPORT_OPTION = output_option(

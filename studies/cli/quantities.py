@@ -27,6 +27,7 @@ from quietarm.models.units import is_number, parse_quantity
 from quietarm.ocp import ModalState
 from quietarm.ocp.checks import finite, has_no, known, unknown, whole
 from quietarm.ocp.energy import Energy, Mix
+from quietarm.ocp.front.time_front import TIME_AND_ENERGY
 from quietarm.ocp.limits import TORQUE_SPEED, quantities_of
 from quietarm.ocp.objectives import checked_objectives
 from quietarm.ocp.task import OF_MOVES
@@ -36,6 +37,7 @@ S = TypeVar("S")
 T = TypeVar("T")
 _PLUS = re.compile(r"(?<!\d[eE])\+")
 RESIDUAL_LIMIT = "residual_limit"
+BAND = "band"
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
 
@@ -69,6 +71,14 @@ def parse_share(text: str, name: str) -> float:
             f"{name}={100 * value:g}%"
         )
     return value
+
+
+def parse_margin(text: str) -> float:
+    """Read how many times the residual limit a band is: 3, or 1.5."""
+    margin = parse_quantity(text, "-", "a margin")
+    if not 1 <= margin < math.inf:
+        raise ValueError(f"{text} is no margin; give 1 or more, such as 3")
+    return margin
 
 
 def parse_parameter(text: str, unit: str, name: str, kind: str = OTHER) -> float:
@@ -122,6 +132,8 @@ def parse_of_plant(
         return parse_values(text, partial(parse_usual, *kind))
     if name == TORQUE_SPEED:
         return parse_torque_speed(text, joint)
+    if name == BAND:
+        return parse_usual("m", "a length", text)
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)
@@ -318,6 +330,16 @@ def _of_column(quantity: str) -> Mapping[str, float]:
 def parse_objectives(text: str) -> tuple[str, ...]:
     """Read names of objectives: ``residual,energy,peak-torque``."""
     return checked_objectives(text.split(","))
+
+
+def parse_objectives_of_front(text: str) -> tuple[str, ...]:
+    """Read names of objectives, also ``time,energy``."""
+    names = [name.strip().lower() for name in text.split(",")]
+    if "time" not in names:
+        return parse_objectives(text)
+    if sorted(names) != sorted(TIME_AND_ENERGY):
+        raise ValueError(f"objectives are {text}; time is weighed against energy: give time,energy")
+    return TIME_AND_ENERGY
 
 
 def parse_noise(text: str) -> float:

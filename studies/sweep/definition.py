@@ -12,7 +12,7 @@ import numpy as np
 
 from quietarm.ocp import Solver, SolveStatus, Sqp
 from quietarm.ocp.checks import listed, not_negative, positive, quoted
-from quietarm.ocp.figures import Figure, further_figures
+from quietarm.ocp.figures import ACTS_AFTER, Figure, further_figures
 from quietarm.ocp.limits import RESIDUAL, SWEEP, TORQUE_SPEED, quantities_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, coefficient_bound
@@ -205,6 +205,8 @@ class Definition:
             "iterations": "1",
             "cold_excess": "1",
         }
+        if self.has_acting:
+            units[ACTS_AFTER] = "s"
         quantities = quantities_of(task.plant.joint, tip).values()
         units |= {quantity.peak: str(quantity.unit) for quantity in quantities}
         units |= {
@@ -245,6 +247,12 @@ class Definition:
         """Figures of a user's own that the dataset holds, without peaks, which it holds anyway."""
         return [figure for figure in further_figures(SWEEP) if not figure.quantity]
 
+    @property
+    def has_acting(self) -> bool:
+        """Whether its moves have a time to act: a band, for errors of their plant."""
+        task = self.grid.task
+        return task.band is not None and bool(task.ranges)
+
     def difference(self, other: Definition) -> str:
         """Names of all in which two sweeps differ, and the residual window of the other."""
         mine = self._entries()
@@ -254,7 +262,8 @@ class Definition:
         return ", ".join(f"{name}{there.get(name, '')}" for name in names)
 
     def _entries(self) -> dict[str, Any]:
-        of = self, self.settings, self.grid.task
+        of = self.grid.task, self.settings, self
         entries = {entry.name: getattr(part, entry.name) for part in of for entry in fields(part)}
+        entries["margin of the band"] = self.grid.task.margin  # beside that of the limits
         del entries["grid"], entries["settings"], entries["solved_by"]
         return entries | self.settings.solver.stated | {axis.name: axis for axis in self.grid.axes}

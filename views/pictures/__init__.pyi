@@ -31,3 +31,4 @@ from .robustness_figures import motions_figure as motions_figure
 from .stacking import stack as stack
 from .surface_figures import draw_parallel as draw_parallel
 from .surface_figures import draw_peak as draw_peak
+from .time_figures import time_front_figure as time_front_figure

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -25,6 +24,7 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
+from quietarm.ocp.planning.default_jerk import rise_time
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.rest import is_at_rest, rest_of
@@ -51,11 +51,6 @@ _OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
 """Of a floor, which nobody drives, and of a recorded path, whose smoothness has its own row."""
 _HARD = 5
 """Times the plain cycloid's acceleration from which on a plan without limits is warned of."""
-_DRIVE_RISES = 0.005
-_OF_CYCLOID = 0.1
-"""A warning of the jerk: at its peak the acceleration would change by its own peak within this [s],
-the rise time (0.35 over the bandwidth) of a position loop of 70 Hz, and five set points at 1 kHz;
-and within this share of the time that the plain cycloid takes."""
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
 _SEEN = 1e-6
@@ -265,7 +260,7 @@ def _figure_rows(
             f"{residual} {residual_place(task)}{_warnings(task, RESIDUAL)}",
         ),
     }
-    for figure in figures_in(REPORT):
+    for figure in figures_in(REPORT, task):
         if figure.name not in rows and figure.name in motion:  # a jump has no jerk
             label = figure.label_on(task.plant)
             rows[figure.name] = label, _figure(figure, candidate, remedies)
@@ -339,9 +334,8 @@ def _hard_jerk(task: PointToPoint, motion: Figures) -> str:
     """How fast the acceleration changes, where no limit of the jerk is near."""
     limit = task.limit_of("jerk")
     ramp = motion.peak_acceleration / motion.peak("jerk")
-    of_cycloid = task.duration / (2 * math.pi)
     limited = limit is not None and _is_near(limit, motion)
-    if limited or ramp >= min(_DRIVE_RISES, _OF_CYCLOID * of_cycloid):
+    if limited or ramp >= rise_time(task.duration):
         return ""
     return f"at this rate the acceleration changes by its peak in {1e3 * ramp:.2g} ms"
 

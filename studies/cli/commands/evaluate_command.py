@@ -35,6 +35,7 @@ from quietarm.studies.cli.outputs import (
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
+from quietarm.views.report.acting_words import path_lines
 from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.plan_rows import path_rows
 
@@ -96,7 +97,7 @@ def _evaluate_coefficients(given: Given) -> None:
         profile = families()[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
         plan = evaluate_coefficients(task, given.coefficients or [], profile=profile)
-    finish_motion(FoundMotion(plan), given.output, sensitivities=given.sensitivities)
+    finish_motion(FoundMotion(plan, given.remarks), given.output, sensitivities=given.sensitivities)
 
 
 def _evaluate_path(given: Given) -> None:
@@ -109,7 +110,7 @@ def _evaluate_path(given: Given) -> None:
     task = given.read_task(start=recorded.start, target=recorded.target, duration=recorded.duration)
     with busy("integrating"):
         rows = path_rows(task, recorded)
-    finish([], rows, *recorded.notes)
+    finish([], *path_lines(task, recorded), rows, *recorded.notes, *given.remarks)
 
 
 def _evaluate_table(given: Given) -> None:
@@ -129,4 +130,4 @@ def _evaluate_table(given: Given) -> None:
     with busy("evaluating"):
         front, notes = import_front(given.coefficients, task, family, **stated)
     files = answer_files(given.output, lambda: pictures.front_figure([front]), front)
-    finish(files, *search_lines([front], notes))
+    finish(files, *search_lines([front], notes), *given.remarks)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.time_front import TIME_AND_ENERGY, time_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
     BOUND,
-    OBJECTIVES,
     ROBOT_PATH,
     SEED,
     SOLVER,
@@ -23,6 +21,7 @@ from quietarm.studies.cli.options import (
     command,
     counting,
     method_option,
+    objectives_option,
     option,
     profile_options,
 )
@@ -32,13 +31,18 @@ from quietarm.studies.cli.outputs import (
     check_page,
     finish,
     output_option,
+    refuse_formats,
 )
-from quietarm.studies.cli.quantities import parse_weights
+from quietarm.studies.cli.quantities import parse_objectives_of_front, parse_weights
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
+from quietarm.views.report.acting_words import band_lines_of_front
 from quietarm.views.report.front_rows import failure_lines, gradient_lines, polish_lines
+from quietarm.views.report.time_rows import time_front_lines
 
-_METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
+_METHODS = {"epsilon": epsilon_front, "weighted": weighted_front}
+_DURATIONS = 9
+"""Points of a front of time and energy where none are asked for: each is a robust plan."""
 _SEARCHES = {
     name: f"{name} is a metaheuristic; give quietarm search --method {name}" for name in PRESETS
 }
@@ -49,7 +53,11 @@ _SEARCHES = {
     method_option(_METHODS, _SEARCHES, "epsilon",
                   "Least energy at one residual limit after another (epsilon), or the least "
                   "weighted sum for one pair of weights after another."),
-    *profile_options(), BOUND, OBJECTIVES,
+    *profile_options(), BOUND,
+    objectives_option(
+        parse_objectives_of_front,
+        " Or time,energy with a --band: moves from the fastest to --duration.",
+    ),
     option("--points", default=50,
            help="Points of the front, with peaks about so many; epsilon has 0.1, 1 and 5 mm "
            "besides."),
@@ -65,7 +73,7 @@ _SEARCHES = {
                   formats=["front"]),
 )  # fmt: skip
 def front(given: Given) -> None:
-    """Find the trade-off of residual, energy and peaks by the gradient.
+    """Find the trade-off of residual, energy and peaks by the gradient, or of time and energy.
 
     \b
     Examples:
@@ -75,10 +83,14 @@ def front(given: Given) -> None:
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 --check
       quietarm front single-link --target pi/6 --duration 0.8 --bound 0.2 \\
           --objectives residual,energy,peak-torque --output front.json --output front.png
+      quietarm front single-link --target pi/6 --band 1mm --objectives time,energy \\
+          --torque-limit 0.15 --jerk-limit 500 --output time.json --output time.png
       quietarm front --polish nsga2.json --output polished.json --output polished.png
     """  # noqa: D301  # \b is click's: do not rewrap
     if given.polish is not None:
         return _polish(given)
+    if given.objectives == TIME_AND_ENERGY:
+        return _of_time(given)
     wanted = "points"
     if given.weights:
         if given.method != "weighted":
@@ -96,6 +108,8 @@ def front(given: Given) -> None:
     solver = given.read_solver()
     total = len(given.weights) or given.points
     options = given.pick(wanted, "bound", "starts", "seed")
+    if given.method == "epsilon":
+        options["at"] = LEVELS if task.band_limit is None else (*LEVELS, task.band_limit)
     if given.objectives != RESIDUAL_AND_ENERGY:
         options |= given.pick("objectives")
     with counting(total, wanted) as report:
@@ -118,7 +132,29 @@ def front(given: Given) -> None:
         with counting(checked_points, "checked points") as report:
             checked = cross_check(solution, checked_points=checked_points, report=report)
     files = answer_files(given.output, lambda: pictures.front_figure([solution]), solution)
-    return finish(files, *gradient_lines(solution, points, checked))
+    lines = gradient_lines(solution, points, checked)
+    return finish(files, *band_lines_of_front(solution), *lines, *given.remarks)
+
+
+def _of_time(given: Given) -> None:
+    """The trade-off of the time to act and the energy."""
+    shown_by_others = ("method", "profile", "terms", "weights", "check", "starts")
+    given.refuse(shown_by_others, "is not for time,energy")
+    refuse_formats(given.output, (".json", ".csv", PICTURE), "time front")
+    longest = given.typed("duration")
+    task = given.read_task(**({} if longest else {"duration": 1.0}))  # the search begins from it
+    points = given.points if given.typed("points") else _DURATIONS
+    with counting(points, "durations") as report:
+        solution = time_front(
+            task,
+            longest=task.duration if longest else None,
+            points=points,
+            report=report,
+            solver=given.read_solver(),
+            **given.pick("bound", "seed"),
+        )
+    files = answer_files(given.output, lambda: pictures.time_front_figure(solution), solution)
+    finish(files, *time_front_lines(solution), *given.remarks)
 
 
 def _polish(given: Given) -> None:

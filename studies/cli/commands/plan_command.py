@@ -22,7 +22,9 @@ from quietarm.ocp import (
     fastest_move,
     plan_move,
 )
+from quietarm.ocp.off_model import off_model
 from quietarm.ocp.planning.correct import refuse_correction
+from quietarm.ocp.planning.default_jerk import DRIVE_RISES, with_default_jerk
 from quietarm.ocp.planning.named_profiles import chooses_terms, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.ocp.task import OF_MOVES
@@ -52,6 +54,8 @@ from quietarm.studies.cli.outputs import (
 from quietarm.studies.cli.robot_options import line_note
 from quietarm.studies.cli.types import INPUT
 from quietarm.views import pictures
+from quietarm.views.report.acting_words import band_lines
+from quietarm.views.report.off_words import off_words
 from quietarm.views.report.plan_rows import floor_rows, plan_rows, sensitivity_rows
 
 FREE = {"free": False, "free-smooth": True}
@@ -120,6 +124,7 @@ def plan(given: Given) -> None:
             smooth = FREE[given.profile]
             answer = _find_free_motion(task, smooth=smooth, starts=given.starts, **solves)
         elif fastest:
+            task = _with_jerk(given, task)
             answer = _find_fastest(task, profile, **within, **solves)
         else:
             answer = _find_least_energy(task, profile, starts=given.starts, **within, **solves)
@@ -127,11 +132,24 @@ def plan(given: Given) -> None:
             with busy("correcting by the whole equations"):
                 corrected = correct_in_full(answer.motion, solver=solves["solver"])
             answer = replace(answer, motion=corrected)
+        answer = replace(answer, notes=[*given.remarks, *answer.notes])
         if isinstance(task.plant, RobotOnPath):
             straightness = line_note(given, task.plant)
             if straightness is not None:
                 answer = replace(answer, notes=[straightness, *answer.notes])
-    finish_motion(answer, given.output, sensitivities=given.sensitivities)
+    finish_motion(_with_errors(answer), given.output, sensitivities=given.sensitivities)
+
+
+def _with_errors(answer: FoundMotion) -> FoundMotion:
+    """With what the motion of a certain task leaves where the plant is off its model."""
+    motion = answer.motion
+    if motion.task.ranges:
+        return answer
+    try:
+        words = off_words(off_model(motion.candidate), motion.task.plant.tip_unit)
+    except (ValueError, SolverFailedError) as error:
+        words = f"what is left if the frequency is off was not computed: {error}"
+    return replace(answer, notes=[words, *answer.notes])
 
 
 def _refuse_meaningless(given: Given) -> None:
@@ -191,6 +209,19 @@ def _find_free_motion(task: PointToPoint, *, solver: Solver, **settings: Any) ->
     return FoundMotion(floor, beside=beside)
 
 
+def _with_jerk(given: Given, task: PointToPoint) -> PointToPoint:
+    """The task of a fastest move with a limit of its jerk: its own, or a default that is said."""
+    limited = with_default_jerk(task)
+    if limited is not task:
+        limit = limited.limit_of("jerk")
+        given.remarks.append(
+            f"the {limit} is taken, as none is given: a plain cycloid's peak acceleration within "
+            f"{1e3 * DRIVE_RISES:g} ms, which a position loop of 70 Hz follows; give the drive's "
+            "own by --jerk-limit"
+        )
+    return limited
+
+
 def _find_fastest(task: PointToPoint, profile: JointProfile | None, **settings: Any) -> FoundMotion:
     """The shortest move, and why a shorter one fails."""
     with busy("looking for the shortest duration"):
@@ -217,7 +248,7 @@ def finish_motion(
         shown.append(floor_rows(motion, answer.beside))
         draw = partial(pictures.floor_figure, motion, answer.beside)
     else:
-        shown.append(plan_rows(motion))
+        shown += [*band_lines(motion), plan_rows(motion)]
         draw = partial(pictures.motion_figure, motion)
         if sensitivities:
             shown += ["\n", "what a parameter that is 1 % larger adds to residual and energy:"]

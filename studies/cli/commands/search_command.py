@@ -143,7 +143,12 @@ def search(given: Given) -> None:
     fronts.sort(key=lambda front: front.record.seed or 0)
     if not any(front.points for front in fronts):
         raise trouble or SolverFailedError(f"{given.method}: {fronts[0].why_empty()}")
-    finish(_files(given.output, fronts, several), *search_lines(fronts), trouble=trouble)
+    finish(
+        _files(given.output, fronts, several),
+        *search_lines(fronts),
+        *given.remarks,
+        trouble=trouble,
+    )
 
 
 def _search(task: PointToPoint, method: str, options: dict[str, Any], seed: int) -> Front:

@@ -106,4 +106,4 @@ def sweep(given: Given) -> None:
         return fronts_figure(store) if given.front else grid_figure(store)
 
     files = answer_files([path for path in given.output if path not in datasets], picture)
-    finish(files, sweep_rows(store), *cells_along(store), trouble=trouble)
+    finish(files, sweep_rows(store), *cells_along(store), *given.remarks, trouble=trouble)

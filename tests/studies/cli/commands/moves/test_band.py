@@ -1,0 +1,124 @@
+"""A band in which the tip may act, by commands: the answer's first line, its range, its limit."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+import quietarm as qa
+from quietarm.ocp import FIGURES, TimeFront
+
+PAPER = "single-link --target 30deg --duration 0.8 --coefficients=0.003347,-0.1697"
+"""The paper's two terms, which leave 0.05 mm of the nominal plant."""
+
+
+def test_the_first_line_says_when_the_tip_may_act_and_for_what(done):
+    out = done(f"evaluate {PAPER} --band 2cm --error frequency=3% --output plan.json")
+    plan = qa.Plan.load("plan.json")
+    assert plan.task.band == 0.02
+    first, *_ = out.splitlines()
+    assert first == (
+        f"may act after {plan.acts_after:.3g} s: within 20 mm for frequency errors up to 3 %"
+    )
+    assert 0.5 < plan.acts_after < 0.8  # before the motion's end
+    stated = json.loads(Path("plan.json").read_text())["stated"]
+    assert stated["acts_after"] == plan.acts_after == plan.figures["acts_after"]
+    assert "acts after" in plan._repr_html_()
+
+
+def test_without_an_error_the_range_is_five_percent_and_is_said(done):
+    out = done(f"evaluate {PAPER} --band 1mm --output plan.json")
+    assert "the band is for frequency errors up to 5 %, as no --error is given" in out
+    assert qa.Plan.load("plan.json").task.ranges == {"frequency": 0.05}
+
+
+def test_a_tip_that_nothing_damps_may_never_act(done):
+    out = done(f"evaluate {PAPER} --set zeta=0 --band 0.1mm --output plan.json")
+    assert out.startswith("may never act: the tip does not stay within 0.1 mm for frequency")
+    assert "acts_after" not in qa.Plan.load("plan.json").figures
+
+
+def test_a_plant_without_a_place_of_its_tip_says_what_is_taken(done):
+    line = "evaluate dual-link --target 30deg --duration 1.6 --coefficients=0,0 --band 50mm"
+    first, *_ = done(line).splitlines()
+    assert "may act after 1.6 s" in first
+    assert first.endswith(
+        "dual-link does not say where its tip goes with the joint, so that it is taken to arrive "
+        "with it"
+    )
+
+
+LINE = "plan single-link --target 30deg --duration 1 --terms 6 --error frequency=1%"
+
+
+def test_a_plan_keeps_a_share_of_the_band(done):
+    done(f"{LINE} --band 3mm --margin 2 --output plan.json")
+    plan = qa.Plan.load("plan.json")
+    assert (plan.task.margin, plan.residual_limit) == (2.0, 1.5e-3)
+    assert plan.worst.residual <= 1.501e-3
+
+
+@pytest.mark.slow
+def test_another_residual_limit_wins_and_that_is_said(done):
+    out = done(f"{LINE} --band 3mm --residual-limit 2mm --output wide.json")
+    assert "the residual limit is 2 mm, as stated, in place of the band's 1 mm" in out
+    assert qa.Plan.load("wide.json").residual_limit == 2e-3
+
+
+def test_a_task_without_a_band_has_no_place_for_it(done):
+    out = done(f"evaluate {PAPER} --output plan.json")
+    plan = qa.Plan.load("plan.json")
+    assert "act" not in out.split()
+    assert plan.acts_after != plan.acts_after  # no number
+    text = Path("plan.json").read_text()
+    assert not any(word in text for word in ("band", "margin", "acts_after"))
+    assert "acts_after" in FIGURES
+
+
+def test_a_plan_without_an_error_says_what_it_leaves_where_the_frequency_is_off(done):
+    """The residuals are those of CVODES on the plants themselves."""
+    out = done("plan single-link --target 30deg --duration 0.8 --output plan.json")
+    motion = qa.Plan.load("plan.json").candidate
+    worst = [
+        1e3 * max(motion.perturbed({"frequency": sign * share}).residual for sign in (-1, 1))
+        for share in (0.02, 0.05, 0.1)
+    ]
+    words = ", ".join(f"{size:.2g}" for size in worst)
+    (line,) = [line for line in out.splitlines() if line.startswith("if the frequency")]
+    assert line.startswith(f"if the frequency is 2, 5, 10 % off: {words} mm (ZV in the same time")
+    assert "--error" in line
+    assert "if the frequency" not in done(
+        "plan single-link --target 30deg --duration 0.8 --terms 6 --error frequency=1%"
+    )
+
+
+@pytest.mark.slow
+def test_a_front_of_time_and_energy_says_what_a_millisecond_takes(done):
+    line = "front single-link --target 30deg --band 5mm --error frequency=2% --jerk-limit 300"
+    out = done(
+        f"{line} --torque-limit 0.2 --objectives time,energy --points 3 --output t.json -o t.csv "
+        "-o t.png"
+    )
+    front = TimeFront.load("t.json")
+    assert len(front.points) == 3
+    assert (front.times[1:] > front.times[:-1]).all()
+    assert (front.energies[1:] < front.energies[:-1]).all()
+    assert "a millisecond takes less than a joule in each of these durations" in out
+    with Path("t.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["acts_after_s"]) for row in rows] == front.times.tolist()
+    plan = front.plan_of(front.points[1])
+    assert plan.acts_after == pytest.approx(front.points[1].acts_after, rel=1e-6)
+    assert plan.energy == pytest.approx(front.points[1].energy, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_fastest_move_without_a_jerk_limit_takes_one_and_says_so(done):
+    out = done(
+        "plan single-link --target 30deg --duration fastest --torque-limit 0.15 -o plan.json"
+    )
+    plan = qa.Plan.load("plan.json")
+    assert plan.motion.peak_jerk <= 1.001 * plan.task.jerk_limit
+    assert f"the jerk {plan.task.jerk_limit:g} rad/s^3 is taken, as none is given" in out
+    assert "warning" not in out
