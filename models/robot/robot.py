@@ -454,7 +454,7 @@ class Robot(MovingRobot):
                 )
         dynamics = Dynamics(mechanism)
         x = np.random.default_rng(0).uniform(0.3, 1.0, dynamics.size)
-        masses = dynamics.masses(x).full()
+        masses = dynamics.masses(x)
         names = [*self.joints, *mechanism.spring_names]
         scale = max(1e-12, float(np.abs(masses).max()))
         for name, inertia in zip(names, np.diag(masses)):

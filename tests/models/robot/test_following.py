@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from robots import urdf_of
+from small_robots import torques_of
 from two_links import BASE, ELBOW, INERTIAL, SHOULDER, URDF, robot_of, with_elbow, words_of
 
 import quietarm as qa
@@ -21,7 +22,7 @@ CHAIN = MIMIC.replace("</robot>", f"{SLIDER}</robot>")
 def _torques(robot, motion):
     """Of the driven joints, the base still."""
     still = np.zeros((3, robot.dynamics.sprung))
-    torques = robot.dynamics.inverse(*np.hstack([motion, still])).full().ravel()
+    torques = torques_of(robot, *np.hstack([motion, still]))
     return torques[: len(robot.joints)]
 
 
@@ -52,7 +53,7 @@ def test_fingers_of_a_gripper_are_pinocchios():
     q = np.random.default_rng(0).uniform(-1, 1, 8)
     theirs = pinocchio.crba(model, model.createData(), q)
     theirs = np.triu(theirs) + np.triu(theirs, 1).T
-    mine = robot.dynamics.masses(np.append(q, [0.0, 0.0])).full()[:8, :8]
+    mine = robot.dynamics.masses(np.append(q, [0.0, 0.0]))[:8, :8]
     assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-9)
 
 
@@ -132,7 +133,7 @@ def test_a_follower_of_a_sprung_joint_swings_with_it():
         urdf=lift, springs={"shoulder": 100.0}, joints=["lift"], gravity=(0.0, 0.0, 0.0)
     )
     assert set(robot.followers) == {"elbow"}
-    inertia = robot.dynamics.masses([0.0, 0.0]).full()[1, 1]
+    inertia = robot.dynamics.masses([0.0, 0.0])[1, 1]
     assert robot.frequencies([0.0])[0] == pytest.approx(np.sqrt(100.0 / inertia))
 
 
