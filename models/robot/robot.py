@@ -64,7 +64,12 @@ from quietarm.models.robot.path.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.robot_notes import notes_of, notes_of_text
 from quietarm.models.robot.text_files import read_text
-from quietarm.models.robot.urdf.following import Following, mimics_nothing
+from quietarm.models.robot.urdf.following import (
+    Following,
+    driven_joints,
+    mimics_nothing,
+    ranges_of_leaders,
+)
 from quietarm.models.robot.urdf.urdf_text import as_read_before, dynamics_of
 
 if TYPE_CHECKING:
@@ -229,17 +234,11 @@ class Robot(MovingRobot):
 
     def ranges(self) -> list[tuple[float, float]]:
         """Least and largest position of every driven joint, and of what follows it [rad or m]."""
-        joints = self.description.joints
-        ranges = {
-            name: self.positions.get(name, (joints[name].lower, joints[name].upper))
-            for name in self.joints
+        of_urdf = {
+            name: (joint.lower, joint.upper) for name, joint in self.description.joints.items()
         }
-        for name, follower in self.followers.items():
-            if follower.leader in ranges:
-                lower, upper = ranges[follower.leader]
-                least, most = follower.range_of_leader(joints[name].lower, joints[name].upper)
-                ranges[follower.leader] = (max(lower, least), min(upper, most))
-        return list(ranges.values())
+        own = {name: self.positions.get(name, of_urdf[name]) for name in self.joints}
+        return list(ranges_of_leaders(own, of_urdf, self.followers).values())
 
     def fitted(self, path: GeometricPath) -> GeometricPath:
         """A path with its positions in the order of the driven joints.
@@ -351,12 +350,7 @@ class Robot(MovingRobot):
     def _driven(self) -> tuple[str, ...]:
         """The driven joints; those that mimic others follow them."""
         joints = self.description.joints
-        passive = {*self.springs, *self.held}
-        names = tuple(self.joints) or tuple(
-            name
-            for name in self.description.moving
-            if name not in passive and joints[name].mimics is None
-        )
+        names = driven_joints(self.description, self.joints, {*self.springs, *self.held})
         for name in (*names, *self.springs):
             self._check_joint("joints", name)
             mimic = joints[name].mimics
