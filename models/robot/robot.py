@@ -43,7 +43,7 @@ from quietarm.models.robot.on_path.path_tables import (
     Tables,
     groups_at,
     modes_on,
-    reach,
+    range_of_tables,
     tables_of,
     variations_of,
 )
@@ -237,7 +237,7 @@ class RobotOnPath(Plant):
 
     name: ClassVar[str] = "robot"
     steps_at_once: ClassVar[int] = 16
-    path_range: ClassVar[tuple[float, float] | None] = reach()
+    path_range: ClassVar[tuple[float, float] | None] = range_of_tables()
     in_space: ClassVar[bool] = True
     along_path: ClassVar[bool] = True
 
@@ -496,7 +496,7 @@ class RobotOnPath(Plant):
                     else ""
                 )
                 raise ValueError(
-                    f"{name} is {multiple:.4g} times the robot's; its tables reach from "
+                    f"{name} is {multiple:.4g} times the robot's; its tables range_of_tables from "
                     f"{1 - FARTHEST:g} to {1 + FARTHEST:g} times{of_frequency}: give a smaller "
                     "error, or change the robot"
                 )

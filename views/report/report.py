@@ -132,7 +132,7 @@ def percents(shares: Sequence[float]) -> str:
     return f"{' to '.join(dict.fromkeys(words))} %"
 
 
-def listed(words: Sequence[str]) -> str:
+def in_a_sentence(words: Sequence[str]) -> str:
     """Words with commas, and an "and" before the last."""
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
@@ -141,7 +141,7 @@ def _environment() -> Environment:
     environment = templates(finalize=_words)
     filters: dict[str, Any] = {
         "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
-        "listed": listed, "counted": counted, "code": code,
+        "listed": in_a_sentence, "counted": counted, "code": code,
     }  # fmt: skip
     environment.filters.update(filters)
     return environment
