@@ -173,7 +173,7 @@ def _threads_of(scheduler: str) -> int:
         return thread.submit(asyncio.run, ask_in_time()).result()
 
 
-def reach(workers: int | str) -> None:
+def reach_scheduler(workers: int | str) -> None:
     """Find out whether a scheduler answers and has workers; ValueError with a remedy if not.
 
     Of a number of processes there is nothing to find out.
@@ -207,7 +207,7 @@ def reach(workers: int | str) -> None:
 @contextmanager
 def _connect(scheduler: str) -> Iterator[Any]:
     """A client of a dask scheduler that has workers."""
-    reach(scheduler)
+    reach_scheduler(scheduler)
     from distributed import Client
 
     client = Client(scheduler, timeout=_ANSWER_SECONDS, set_as_default=False)

@@ -38,7 +38,7 @@ def check_stable(plant: str, angles: Array, slopes: Array) -> None:
         )
 
 
-def check_passive(plant: str, angles: Array, slopes: Array) -> None:
+def refuse_active_rest(plant: str, angles: Array, slopes: Array) -> None:
     """Refuse a plant of this name whose joint has no inertia, or yields work from rest."""
     by_W, by_dW = _of_modes(slopes)
     modes = by_W.shape[1]

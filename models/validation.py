@@ -72,7 +72,7 @@ def check_contract(plant: Plant) -> None:
 @lru_cache(maxsize=256)
 def check_passive(plant: Plant) -> None:
     """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
-    at_rest.check_passive(plant.name, *_slopes_at_rest(plant))
+    at_rest.refuse_active_rest(plant.name, *_slopes_at_rest(plant))
 
 
 @lru_cache(maxsize=1024)

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.models import JointMotion, Plant
 from quietarm.ocp.checks import numbers, quoted, takes
 from quietarm.ocp.figures import Figures
-from quietarm.ocp.limits import JERK, RESIDUAL, Quantity
+from quietarm.ocp.limits import OF_THIRD_ORDER, RESIDUAL, Quantity
 from quietarm.ocp.profiles.check_profile import check_motion, check_profile
 from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.profiles.joint_profile import JointProfile
@@ -199,7 +199,7 @@ class JudgedMotion:
         if quantity.name == RESIDUAL:
             return -self.residual, self.residual
         if quantity not in self._known_ranges:
-            has_it = quantity.derivative != JERK or self.path.has_jerk
+            has_it = quantity.derivative != OF_THIRD_ORDER or self.path.has_jerk
             self._known_ranges[quantity] = self._range(quantity) if has_it else (-inf, inf)
         return self._known_ranges[quantity]
 

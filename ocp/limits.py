@@ -17,6 +17,7 @@ from quietarm.models import Expression, Plant, SingleLinkManipulator
 from quietarm.models.dimensions import (
     ACCELERATION,
     EFFORT,
+    JERK,
     NO_WORDS,
     NONE,
     SPEED,
@@ -26,7 +27,6 @@ from quietarm.models.dimensions import (
     Words,
     words_of,
 )
-from quietarm.models.dimensions import JERK as OF_JERK
 from quietarm.models.joint_motion import MIXED, ROTARY
 from quietarm.models.plant_file import note_added
 from quietarm.ocp.checks import instance, not_negative, quoted, takes, words_of_error
@@ -178,7 +178,7 @@ _quantities: dict[str, Quantity] = {
         ),
         Quantity(
             name="jerk",
-            unit=OF_JERK,
+            unit=JERK,
             label=Words("joint jerk"),
             values=lambda sample: [joint.jerk for joint in sample.joints],
             derivative=3,
@@ -269,7 +269,7 @@ RESIDUAL = "residual"
 TORQUE_SPEED = "torque_speed"
 _RESERVED = (RESIDUAL, TORQUE_SPEED, "energy")
 """Names of what is limited, or shown, in other ways."""
-JERK = 3
+OF_THIRD_ORDER = 3
 """The derivative of the angle that no plant needs, and that is nowhere where the acceleration
 jumps."""
 _RESIDUAL = Quantity(RESIDUAL, TIP, Words("residual vibration"), lambda _: [], in_scenarios=True)
@@ -350,7 +350,7 @@ def _ends(lower: float, upper: float) -> str:
 
 def ask_for_jerk(quantities: Iterable[Quantity]) -> bool:
     """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
-    return any(quantity.derivative == JERK for quantity in quantities)
+    return any(quantity.derivative == OF_THIRD_ORDER for quantity in quantities)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, after_arrival
 from quietarm.ocp.simulation.mesh import ROLLOUT_STEPS, default_steps
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.told_progress import Progress
 from quietarm.ocp.uncertainty import DAMPING, FREQUENCY, check_ranges
 
 OF_MODES = (FREQUENCY, DAMPING)
@@ -38,8 +39,6 @@ _ALONG_BY_CVODES = {1: 41, 2: 9, 3: 5, 4: 3}
 """The same where each takes some milliseconds."""
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], object]
-"""Told how many evaluations are done, and how many there are."""
 
 
 def _along_errors(

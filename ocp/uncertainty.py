@@ -16,11 +16,10 @@ import numpy as np
 from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Modes
+from quietarm.models.plant import DAMPING, FREQUENCY
 from quietarm.models.validation import check_contract, outputs_of
 from quietarm.ocp.checks import has_no, numbers, positive, quoted, takes
 
-FREQUENCY = "frequency"
-DAMPING = "damping"
 _OF_MODES = (FREQUENCY, DAMPING)
 _SAME = 1e-9
 """How far, as a share, equations may differ between two ways to change a parameter."""

@@ -90,3 +90,23 @@ def test_no_files_need_each_other_not_even_for_a_type():
     }
     assert any(needs.values())
     assert mutual <= FOR_TYPES_ALONE
+
+
+def test_no_class_has_the_name_of_a_type_that_is_written_elsewhere():
+    """Such as Values = Sequence[Expression] beside a class Values: one is taken for the other."""
+    classes = {
+        node.name: path
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef)
+    }
+    written = {
+        (target.id, path)
+        for path, tree in TREES.items()
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name) and not target.id.isupper()
+    }
+    assert written
+    assert not [(name, path) for name, path in written if classes.get(name, path) != path]

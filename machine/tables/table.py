@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.machine.tables.column_units import KINDS, UNITS, kind_of, normal, split_name
 from quietarm.machine.tables.matlab import read_matlab
-from quietarm.machine.tables.text import read_text
+from quietarm.machine.tables.text import read_columns
 from quietarm.ocp import FileFormatError
 from quietarm.ocp.checks import cut, listed, nearest, quoted
 from quietarm.ocp.files import MOST_BYTES, read_bytes
@@ -254,7 +254,7 @@ def read_table(path: Path, *, strict: bool = False) -> Table:
             columns = _of_variables(_arrays(path.suffix.lower(), content, strict), strict)
         else:
             _refuse_huge(content)
-            text = read_text(content, strict)
+            text = read_columns(content, strict)
             columns = [Column(*entry) for entry in text.numbers]
             words = text.words
     columns = [replace(column, name=cut(column.name, longest_name)) for column in columns]

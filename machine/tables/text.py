@@ -37,7 +37,7 @@ class TextColumns(NamedTuple):
     words: list[str]
 
 
-def read_text(content: bytes, strict: bool) -> TextColumns:
+def read_columns(content: bytes, strict: bool) -> TextColumns:
     """The columns of a text; separator, decimal mark and heading are found.
 
     A column of clock times is in seconds since its first row. A `strict` table has nothing but its

@@ -15,7 +15,13 @@ from quietarm.models.number_checks import clipped, has_no, listed, quoted
 from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
 from quietarm.models.robot.text_files import read_text, read_yaml
-from quietarm.models.robot.urdf.following import Following, bounds_of_leaders, followers_of
+from quietarm.models.robot.urdf.following import (
+    Following,
+    bounds_of_leaders,
+    driven_joints,
+    followers_of,
+    ranges_of_leaders,
+)
 from quietarm.models.robot.urdf.joint_limits import ByQuantity, JointLimits, read_joint_limits
 from quietarm.models.robot.urdf.read_urdf import PRISMATIC, UrdfJoint, read_urdf
 from quietarm.models.units import parse_quantity
@@ -106,18 +112,11 @@ def _held(entry: Any, urdf: str) -> dict[str, float]:
     }
 
 
-def limits_of(urdf: str, held: Collection[str] = ()) -> dict[str, dict[str, float]]:
-    """The limits that a URDF has, by quantity and joint, those of followers bind who leads them.
-
-    Accelerations are kept within the URDF's limits of deceleration as well; torques of joints that
-    follow others have no limit of their own. Of the joints that are `held` none follows another.
-    """
-    description = read_urdf(urdf)
-    return _of_leaders(_stated(description.joints), followers_of(description, held))
-
-
 def _stated(joints: Mapping[str, UrdfJoint]) -> ByQuantity:
-    """The limits of a URDF by quantity and joint, each of the joint that has it."""
+    """The limits of a URDF by quantity and joint, each of the joint that has it.
+
+    Accelerations are kept within the URDF's limits of deceleration as well.
+    """
     by_quantity = {
         "torque": {name: joint.effort for name, joint in joints.items()},
         "speed": {name: joint.velocity for name, joint in joints.items()},
@@ -154,7 +153,8 @@ def _limits(given: Mapping[str, Any], folder: Path) -> JointLimits:
             f"limits is {quoted(entry)}; give a joint_limits.yaml of MoveIt, or {OF_URDF}"
         )
     description = read_urdf(given["urdf"])
-    driven = _driven(given)
+    passive = {*given.get("springs", ()), *given.get("held", ())}
+    driven = driven_joints(description, given.get("joints", ()), passive)
     followers = {
         name: how
         for name, how in followers_of(description, given.get("held", ())).items()
@@ -169,9 +169,16 @@ def _limits(given: Mapping[str, Any], folder: Path) -> JointLimits:
     if entry != OF_URDF:
         path = _beside(entry, folder, "limits")
         read = read_joint_limits(path, description.joints, moved, stated)
+    joints = description.joints
+    of_urdf = {
+        how.leader: (joints[how.leader].lower, joints[how.leader].upper)
+        for name, how in followers.items()
+        if name in read.positions
+    }
+    given_ranges = {name: ends for name, ends in read.positions.items() if name not in followers}
     return JointLimits(
         _of_leaders(read.limits, followers),
-        _ranges_of_leaders(read.positions, followers, description.joints),
+        ranges_of_leaders(of_urdf | given_ranges, read.positions, followers),
         [*read.notes, *_without_limits(driven, read.limits)],
     )
 
@@ -184,30 +191,6 @@ def _without_limits(driven: Collection[str], limits: ByQuantity) -> Iterator[Not
             yield Note(
                 f"no limit of {quantity} for {listed(names)}: the URDF's {entry} is 0, or missing"
             )
-
-
-def _ranges_of_leaders(
-    positions: Mapping[str, tuple[float, float]],
-    followers: Mapping[str, Following],
-    joints: Mapping[str, UrdfJoint],
-) -> dict[str, tuple[float, float]]:
-    """Narrower ranges of joints, those of joints that follow others as ranges of these."""
-    ranges = {name: ends for name, ends in positions.items() if name not in followers}
-    for name, how in followers.items():
-        if name in positions:
-            of_urdf = joints[how.leader]
-            lower, upper = ranges.get(how.leader, (of_urdf.lower, of_urdf.upper))
-            least, most = how.range_of_leader(*positions[name])
-            ranges[how.leader] = (max(lower, least), min(upper, most))
-    return ranges
-
-
-def _driven(given: Mapping[str, Any]) -> Collection[str]:
-    """The joints that are driven, named or not; those that mimic others are not."""
-    passive = {*given.get("springs", ()), *given.get("held", ())}
-    urdf = read_urdf(given["urdf"])
-    leading = [name for name in urdf.moving if urdf.joints[name].mimics is None]
-    return given.get("joints") or [name for name in leading if name not in passive]
 
 
 def _beam(entry: Any, what: str) -> Beam:

@@ -41,10 +41,10 @@ def notes_of_text(urdf: str) -> tuple[Note, ...]:
     names = passed_over(urdf)
     if not names:
         return ()
-    return (Note(f"not read of the URDF: {listed(names)}"),)
+    return (Note(f"not read of the URDF: {first_of(names)}"),)
 
 
-def listed(names: Sequence[str]) -> str:
+def first_of(names: Sequence[str]) -> str:
     """The first names, and how many more there are."""
     shown = ", ".join(names[:_MOST_NAMES])
     more = len(names) - _MOST_NAMES
@@ -78,7 +78,7 @@ def _faulty_inertias(urdf: Urdf) -> Iterator[Note]:
     faults = {name: link.fault for name, link in urdf.links.items() if link.fault}
     if faults:
         name, fault = next(iter(faults.items()))
-        others = listed([f"{other!r}" for other in list(faults)[1:]])
+        others = first_of([f"{other!r}" for other in list(faults)[1:]])
         also = f" (so have {others})" if others else ""
         yield Note(f"link {quoted(name)} of the URDF has {fault}, which no body has{also}; mend it")
 
@@ -103,7 +103,7 @@ def _own_friction(robot: RobotParts) -> Iterator[Note]:
             if 0 != getattr(joints[name], of_urdf) != value
         ]
         if differing:
-            yield Note(f"{entry} as given in place of the URDF's {of_urdf}: {listed(differing)}")
+            yield Note(f"{entry} as given in place of the URDF's {of_urdf}: {first_of(differing)}")
 
 
 def _damping_of_passive_joints(robot: RobotParts) -> Iterator[Note]:
@@ -115,7 +115,7 @@ def _damping_of_passive_joints(robot: RobotParts) -> Iterator[Note]:
     ]
     if left_out:
         yield Note(
-            f"dynamics of {listed(left_out)} in the URDF are not used: joints with springs have "
+            f"dynamics of {first_of(left_out)} in the URDF are not used: joints with springs have "
             "the damping that springs gives"
         )
 
@@ -139,7 +139,7 @@ def _without_leader(urdf: Urdf) -> Iterator[Note]:
     """Joints that mimic what the URDF does not have."""
     missing = [name for name in urdf.joints if mimics_nothing(urdf, name)]
     if missing:
-        names = listed([f"{name} {mimics_nothing(urdf, name)}" for name in missing])
+        names = first_of([f"{name} {mimics_nothing(urdf, name)}" for name in missing])
         yield Note(f"joints of the URDF are held, as it does not have what they mimic: {names}")
 
 
@@ -148,7 +148,7 @@ def _without_ranges(robot: RobotParts) -> Iterator[Note]:
     joints = robot.description.joints
     names = [name for name in robot.joints if not joints[name].continuous and joints[name].endless]
     if names:
-        yield Note(f"the URDF has neither lower nor upper of {listed(names)}: taken as endless")
+        yield Note(f"the URDF has neither lower nor upper of {first_of(names)}: taken as endless")
 
 
 def _decelerations(robot: RobotParts) -> Iterator[Note]:
@@ -165,5 +165,5 @@ def _decelerations(robot: RobotParts) -> Iterator[Note]:
     if taken:
         yield Note(
             "the URDF's limits of deceleration are smaller, and are kept while joints speed up as "
-            f"well: {listed(taken)}"
+            f"well: {first_of(taken)}"
         )

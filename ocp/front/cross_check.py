@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FrontPoint
-from quietarm.ocp.front.tradeoff import Progress, Tradeoff, no_report
+from quietarm.ocp.front.tradeoff import Tradeoff
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
@@ -21,6 +21,7 @@ from quietarm.ocp.solvers.choice import other_solver, stated_solver
 from quietarm.ocp.solvers.problem import Program
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.told_progress import Progress, no_report
 
 
 @dataclass(frozen=True)

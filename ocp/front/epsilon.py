@@ -14,7 +14,7 @@ from quietarm.ocp.checks import positive, several, takes
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.surface import surface_front
-from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Progress, Tradeoff, no_report
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Tradeoff
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.choose_profile import choose_profile
@@ -26,6 +26,7 @@ from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.told_progress import Progress, no_report
 
 Array = NDArray[np.float64]
 

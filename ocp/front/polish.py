@@ -11,19 +11,14 @@ import numpy as np
 from quietarm.ocp.checks import takes
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
-from quietarm.ocp.front.tradeoff import (
-    RESIDUAL_LIMIT,
-    Certificate,
-    Progress,
-    Tradeoff,
-    no_report,
-)
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Tradeoff
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Setting, versions
 from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import NAME, Solver
 from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.told_progress import Progress, no_report
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from quietarm.ocp.errors import SolverFailedError, SolveStatus
 from quietarm.ocp.front.ends import find_ends
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import FailedPoint, FrontPoint
-from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Progress, Tradeoff
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Tradeoff
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, better
 from quietarm.ocp.planning.request import Request
@@ -36,6 +36,7 @@ from quietarm.ocp.solvers.problem import (
     Program,
     Solution,
 )
+from quietarm.ocp.told_progress import Progress
 
 Array = NDArray[np.float64]
 Cell = tuple[int, ...]

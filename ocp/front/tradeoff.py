@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -25,18 +25,12 @@ from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
-"""Called with the number of points done and of all."""
 RESIDUAL_LIMIT = "residual_limit"
 BETWEEN_ENDS = 1e-4
 """Share by which energies of points between the ends may differ: looser than a plan's."""
 
 
-def no_report(done: int, total: int) -> None:
-    """Report nothing."""
-
-
-Place = Mapping[str, float]
+AskedPlace = Mapping[str, float]
 """Where a point was to be: a residual limit [m], or weights, by name."""
 
 
@@ -150,7 +144,7 @@ class Tradeoff:
 
     def certify(
         self,
-        solutions: Sequence[tuple[Solution, Place]],
+        solutions: Sequence[tuple[Solution, AskedPlace]],
         most_residual: float = np.inf,
         *,
         free: bool = False,

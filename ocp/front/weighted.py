@@ -14,7 +14,7 @@ from quietarm.ocp.checks import not_negative, quoted, takes
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.front.ends import Ends, find_ends
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Place, Progress, Tradeoff, no_report
+from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, AskedPlace, Tradeoff
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.best_of_starts import best_of_starts, minimum_of
 from quietarm.ocp.planning.choose_profile import choose_profile
@@ -25,9 +25,10 @@ from quietarm.ocp.solvers.problem import Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.told_progress import Progress, no_report
 
 Array = NDArray[np.float64]
-Minimum = tuple[Solution, Place]
+Minimum = tuple[Solution, AskedPlace]
 Gap = tuple[float, float]
 """Residuals [m] between which no weight has a point."""
 

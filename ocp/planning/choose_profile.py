@@ -137,7 +137,10 @@ def _plan_on_spline(request: Request) -> Plan | None:
     """The plan on a spline that keeps the limits; None where none was found."""
     if not request.task.limits or request.bound is not None:
         return None
-    fitted = fitting_spline(request.task, request.residual_limit, None)
+    try:
+        fitted = fitting_spline(request.task, request.residual_limit, None)
+    except ValueError:  # no motion is so slow that it keeps the limits
+        return None
     if fitted is None:
         return None
     return _try_along(request, *fitted)

@@ -28,6 +28,7 @@ from quietarm.ocp.planning.rigid_motion import (
     rigid_duration,
     rigid_motion,
 )
+from quietarm.ocp.planning.too_short import refuse_to_hold
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.simulation.free_vibration import FreeVibration
@@ -111,6 +112,7 @@ def fastest_move(
     if not task.limits:
         names = ", ".join(QUANTITIES)
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
+    refuse_to_hold(task)
     if task.uncertainty is not None and residual_limit is None and task.band is None:
         residual_limit = fastest_residual_limit(task)
     began = time.perf_counter()

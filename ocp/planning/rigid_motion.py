@@ -7,7 +7,7 @@ and jerk; other limits are turned into such by the plant's equations where nothi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -18,11 +18,14 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import TORQUE_SPEED, Limit, Shares, TorqueSpeedLine
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
-from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along
+from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.ocp.task import PointToPoint
 
 _ANGLES = 9
 """Of the joint, at which a plant is asked what an acceleration takes."""
+_OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", "torque", TORQUE_SPEED, "deflection")
+"""Limits that say how a joint may move where nothing swings."""
 
 
 class RigidBounds(NamedTuple):
@@ -223,7 +226,12 @@ def _slopes(task: PointToPoint, least: float = 1e-9) -> np.ndarray:
 
 
 def assumed_bounds(task: PointToPoint) -> RigidBounds:
-    """The same, and what limits of torque and deflection come to where nothing swings."""
+    """The same, and what the other limits come to: of torque and deflection where nothing swings.
+
+    Of all else, as of one's own quantities, what the fastest plain cycloid within them reaches. So
+    a limit that is nowhere in the way changes nothing. ValueError where no cycloid is so slow that
+    it keeps them, and nothing else limits the joint.
+    """
     declared = declared_bounds(task)
     needed = _Needed.along(task)
     accelerations: list[float] = []
@@ -244,35 +252,57 @@ def assumed_bounds(task: PointToPoint) -> RigidBounds:
         speeding_up=min(declared.speeding_up, largest),
         braking=min(declared.braking, largest),
     )
-    if math.isfinite(min(bounds.speed, bounds.speeding_up, bounds.braking, bounds.rising)):
+    is_limited = math.isfinite(min(bounds.speed, *bounds[1:3], bounds.rising))
+    others = [limit for limit in task.limits if limit.name not in _OF_A_RIGID_JOINT]
+    if is_limited and not others:
         return bounds
-    largest = _of_a_cycloid(task)
-    return bounds._replace(speeding_up=largest, braking=largest)
+    least = _least_cycloid(task, others or task.limits)
+    if math.isinf(least) and not is_limited:
+        limits = ", ".join(map(str, others or task.limits))
+        raise ValueError(
+            f"the plain cycloid breaks its limits ({limits}) in every duration that the solver "
+            "resolves; give wider ones"
+        )
+    largest = 2 * math.pi * abs(task.span) / least**2
+    return bounds._replace(
+        speeding_up=min(bounds.speeding_up, largest), braking=min(bounds.braking, largest)
+    )
 
 
-def _of_a_cycloid(task: PointToPoint) -> float:
-    """The peak acceleration of the fastest plain cycloid that keeps all limits, within a half.
+def _least_cycloid(task: PointToPoint, limits: Sequence[Limit]) -> float:
+    """How long the fastest plain cycloid takes that keeps limits [s], within some per cent.
 
-    For limits of which no motion of a rigid joint tells. Infinite where none keeps them.
+    Infinite where none does.
     """
 
     def keeps(duration: float) -> bool:
         cycloid = CycloidPolynomial(0)
         try:
             motion = JudgedMotion.of_profile(replace(task.certain, duration=duration), cycloid, [])
-            return not motion.figures.exceeded(task.limits)
+            return not motion.figures.exceeded(limits)
         except SolverFailedError:
             return False
 
-    rounds = 12  # to a few thousand seconds, or a fraction of a millisecond
-    duration = 1.0
-    if not keeps(duration):
-        longer = (duration * 2.0**k for k in range(1, rounds))
-        duration = next(filter(keeps, longer), math.inf)
+    fastest = fastest_along(task.plant, task.start, task.target)
+    longest = MOST_SOLVER_STEPS / 2 / fastest if fastest > 0 else math.inf
+    shortest = 2.0**-12
+    duration = min(1.0, longest)
+    if keeps(duration):
+        while duration > shortest and keeps(duration / 2):
+            duration /= 2
     else:
-        shorter = (duration / 2.0**k for k in range(1, rounds))
-        duration = 2 * next((time for time in shorter if not keeps(time)), 2.0**-rounds)
-    return 2 * math.pi * abs(task.span) / duration**2 if math.isfinite(duration) else math.inf
+        while not keeps(duration):
+            if duration >= min(longest, 1 / shortest):
+                return math.inf
+            duration = min(2 * duration, longest)
+    low = duration / 2
+    for _ in range(4):
+        middle = math.sqrt(low * duration)
+        if keeps(middle):
+            duration = middle
+        else:
+            low = middle
+    return duration
 
 
 def largest_deflection(task: PointToPoint) -> float:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from quietarm.models import JointMotion, Plant
 from quietarm.models.compiled import Compiled
-from quietarm.ocp.limits import JERK, TORQUE_SPEED, Limit
+from quietarm.ocp.limits import OF_THIRD_ORDER, TORQUE_SPEED, Limit
 from quietarm.ocp.sample import sample_plant
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.task import PointToPoint
@@ -42,7 +42,7 @@ _SLOWEST = 1e-100
 """Speeds that count as unlimited, and as none."""
 
 
-class Rows(NamedTuple):
+class LimitedRows(NamedTuple):
     """Limited values at the places of a path: a row each, a column for each place.
 
     They are `slope` times the acceleration along the path, `bend` times the squared speed, `drag`
@@ -56,14 +56,14 @@ class Rows(NamedTuple):
     lower: Array
     upper: Array
 
-    def backwards(self) -> Rows:
+    def backwards(self) -> LimitedRows:
         """The same rows from the last place to the first, where braking is speeding up."""
-        turned = Rows(*(part[:, ::-1] for part in self))
+        turned = LimitedRows(*(part[:, ::-1] for part in self))
         return turned._replace(slope=-turned.slope)
 
-    def and_(self, more: Rows) -> Rows:
+    def and_(self, more: LimitedRows) -> LimitedRows:
         """These rows and others."""
-        return Rows(*map(np.concatenate, zip(self, more)))
+        return LimitedRows(*map(np.concatenate, zip(self, more)))
 
 
 def least_duration(task: PointToPoint, arrives_at_rest: bool) -> float:
@@ -92,12 +92,12 @@ def values_at_rest(task: PointToPoint, limit: Limit) -> Array:
     return _Values(task, [limit], False, places=2).at(0.0, 0.0)
 
 
-def limited_rows(task: PointToPoint, limits: Sequence[Limit], swings: bool = False) -> Rows:
+def limited_rows(task: PointToPoint, limits: Sequence[Limit], swings: bool = False) -> LimitedRows:
     """The rows of limits, in the direction of a move.
 
     Without those of quantities that are no such sums, and of the jerk.
     """
-    limits = [limit for limit in limits if limit.quantity.derivative != JERK]
+    limits = [limit for limit in limits if limit.quantity.derivative != OF_THIRD_ORDER]
     values = _Values(task, limits, swings)
     at_rest = values.at(0.0, 0.0)
     slope = values.at(0.0, 1.0) - at_rest
@@ -115,7 +115,7 @@ def limited_rows(task: PointToPoint, limits: Sequence[Limit], swings: bool = Fal
     sides = np.repeat([(limit.lower, limit.upper) for limit in limits], counts, axis=0)
     lower, upper = (np.repeat(side[:, None], _PLACES, axis=1) for side in sides.reshape(-1, 2).T)
     is_sum = differs <= _NEARLY * scale
-    return Rows(
+    return LimitedRows(
         *(part[is_sum] for part in (slope, bend, drag, at_rest, lower, upper)),
     )
 
@@ -169,7 +169,7 @@ def _functions(plant: Plant, limits: Sequence[Limit]) -> tuple[ca.Function, ca.F
     )
 
 
-def _squared_speeds(task: PointToPoint, rows: Rows) -> tuple[Array, float]:
+def _squared_speeds(task: PointToPoint, rows: LimitedRows) -> tuple[Array, float]:
     """The largest squared speed at every place, from rest at the first.
 
     And that at the second if nothing limited the speed.
@@ -198,7 +198,7 @@ def _squared_speeds(task: PointToPoint, rows: Rows) -> tuple[Array, float]:
     return squares, first_square
 
 
-def _speed_limit(rows: Rows) -> Array:
+def _speed_limit(rows: LimitedRows) -> Array:
     """The largest squared speed by rows that follow from the speed alone."""
     alone = ~(rows.slope.any(axis=1) | rows.bend.any(axis=1) | rows.at_rest.any(axis=1))
     drag = rows.drag[alone]

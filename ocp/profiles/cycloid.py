@@ -11,7 +11,7 @@ import casadi as ca
 
 from quietarm.models import Expression, JointMotion
 from quietarm.ocp.profiles.b_splines import spline
-from quietarm.ocp.profiles.differentiate import Derivatives, differentiate
+from quietarm.ocp.profiles.differentiate import Slopes, differentiate
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 from quietarm.ocp.profiles.term_profile import TermProfile
 
@@ -31,7 +31,7 @@ class Cycloid(JointProfile):
         U = self.input(coefficients, fraction)
         return self.motion_of((U, 0.0, 0.0), 0.0, 1.0, 1.0).angle
 
-    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Slopes:
         """U, and its first two derivatives by the fraction: CasADi's."""
         U, dU, ddU = differentiate(
             lambda at: [self.input(coefficients, at)], fraction, coefficients, order=2
@@ -40,7 +40,7 @@ class Cycloid(JointProfile):
 
     def motion_of(
         self,
-        derivatives: Derivatives,
+        derivatives: Slopes,
         start: Expression,
         target: Expression,
         duration: Expression,
@@ -80,7 +80,7 @@ class CycloidPolynomial(TermProfile, Cycloid):
         """U of eq (6): linear in the coefficients."""
         return self.derivatives(coefficients, fraction)[0]
 
-    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Slopes:
         """U by Horner's rule, differentiated as it goes: faster than CasADi's."""
         T = 2 * fraction - 1  # eq (7)
         p = dp = ddp = 0 * T
@@ -91,7 +91,7 @@ class CycloidPolynomial(TermProfile, Cycloid):
         return with_bump(fraction, p, dp, ddp)
 
 
-def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expression) -> Derivatives:
+def with_bump(fraction: Expression, p: Expression, dp: Expression, ddp: Expression) -> Slopes:
     """U = t/TE + (1 - T^2) p, whose bump holds the ends, and its derivatives by the fraction."""
     T = 2 * fraction - 1  # eq (7)
     bump = 1 - T * T
@@ -127,7 +127,7 @@ class CycloidSpline(TermProfile, Cycloid):
         """U: linear in the coefficients."""
         return self.derivatives(coefficients, fraction)[0]
 
-    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Slopes:
         """U and its derivatives, splines of a lower degree."""
         pieces = self.terms + 2 - self.degree
         knots = [i / pieces for i in range(pieces + 1)]

@@ -9,7 +9,7 @@ import casadi as ca
 
 from quietarm.models import Expression
 
-Derivatives = tuple[Expression, Expression, Expression]
+Slopes = tuple[Expression, Expression, Expression]
 """A function of the fraction of the duration, and its first two derivatives by it."""
 
 

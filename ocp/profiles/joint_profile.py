@@ -16,7 +16,7 @@ from quietarm.interrupts import interruptible
 from quietarm.models import Expression, JointMotion
 from quietarm.models.final import refuse_overridden
 from quietarm.ocp.checks import finite, numbers, positive, whole
-from quietarm.ocp.profiles.differentiate import Derivatives, differentiate
+from quietarm.ocp.profiles.differentiate import Slopes, differentiate
 
 Values = Sequence[Expression]
 """The coefficients."""
@@ -136,7 +136,7 @@ class JointProfile(ABC):
             in the coefficients, the gradient is several times cheaper.
         """
 
-    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Slopes:
         """The angle, and its first two derivatives by the fraction; CasADi's by default."""
         share, rate, bend = differentiate(
             lambda at: [self.angle(coefficients, at)], fraction, coefficients, order=2
@@ -154,7 +154,7 @@ class JointProfile(ABC):
 
     def motion_of(
         self,
-        derivatives: Derivatives,
+        derivatives: Slopes,
         start: Expression,
         target: Expression,
         duration: Expression,
@@ -174,7 +174,11 @@ class JointProfile(ABC):
 
     @final
     def motion(
-        self, coefficients: Values, fraction: Expression, *move: Expression, jerk: bool = False
+        self,
+        coefficients: Values,
+        fraction: Expression,
+        *move: Expression,
+        jerk: bool = False,
     ) -> JointMotion:
         """Angle, speed and acceleration of the joint, and its jerk where it is asked for.
 

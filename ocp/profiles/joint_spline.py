@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from quietarm.models import Expression
 from quietarm.ocp.checks import finite, several
 from quietarm.ocp.profiles.b_splines import spline
-from quietarm.ocp.profiles.differentiate import Derivatives
+from quietarm.ocp.profiles.differentiate import Slopes
 from quietarm.ocp.profiles.joint_profile import JointProfile, Values
 
 
@@ -100,7 +100,7 @@ class JointSpline(JointProfile):
         """The spline: linear in the coefficients."""
         return self.derivatives(coefficients, fraction)[0]
 
-    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Slopes:
         """The spline and its derivatives, splines of a lower degree."""
         share, rate, bend = self._spline(coefficients, fraction, 2)
         return share, rate, bend

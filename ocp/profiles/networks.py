@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Expression
 from quietarm.ocp.profiles.cycloid import Cycloid, with_bump
-from quietarm.ocp.profiles.differentiate import Derivatives
+from quietarm.ocp.profiles.differentiate import Slopes
 from quietarm.ocp.profiles.joint_profile import Values
 from quietarm.ocp.profiles.term_profile import TermProfile
 
@@ -69,7 +69,7 @@ class CycloidOfUnits(TermProfile, Cycloid):
 
     @staticmethod
     @abstractmethod
-    def unit(x: Expression, y: Expression, T: Expression) -> Derivatives:
+    def unit(x: Expression, y: Expression, T: Expression) -> Slopes:
         """One unit g and its first two derivatives by T; finite for all x and y."""
 
     def _assemble(self, weight: float, field: str) -> NDArray[np.float64]:
@@ -105,7 +105,7 @@ class CycloidOfUnits(TermProfile, Cycloid):
         """U: the weights alone enter linearly."""
         return self.derivatives(coefficients, fraction)[0]
 
-    def derivatives(self, coefficients: Values, fraction: Expression) -> Derivatives:
+    def derivatives(self, coefficients: Values, fraction: Expression) -> Slopes:
         """U and its derivatives."""
         T = 2 * fraction - 1  # eq (7)
         constant, *weights = coefficients[: 1 + self.terms]
@@ -147,7 +147,7 @@ class CycloidGaussians(CycloidOfUnits):
         return centres, Range(2.0, 0.25, 0.3, 3.0)
 
     @staticmethod
-    def unit(x: Expression, y: Expression, T: Expression) -> Derivatives:
+    def unit(x: Expression, y: Expression, T: Expression) -> Slopes:
         """A Gaussian of centre x and inverse width y, and its derivatives."""
         z = y * (T - x)
         g = ca.exp(-z * z)
@@ -180,7 +180,7 @@ class CycloidNetwork(CycloidOfUnits):
         return biases, Range(gain, 0.5, 0.3, steepest)
 
     @staticmethod
-    def unit(x: Expression, y: Expression, T: Expression) -> Derivatives:
+    def unit(x: Expression, y: Expression, T: Expression) -> Slopes:
         """A hidden node of bias x and gain y, and its derivatives."""
         g = ca.tanh(x + y * T)
         slope = y * (1 - g * g)

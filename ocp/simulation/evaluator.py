@@ -37,7 +37,7 @@ time to build it, and grows with the square of the steps."""
 
 
 @dataclass(frozen=True)
-class Values:
+class RowValues:
     """What rows cost: F2 [J], state on arrival, limited quantities at the nodes.
 
     Shapes are (rows,), (rows, 2 * modes) and (rows, values); `places_of` a simulation tells which
@@ -203,7 +203,7 @@ class Evaluator:
         return table
 
     @on_one_thread
-    def of_values(self, values: Values, offset: ArrayLike = 0.0) -> Evaluation:
+    def of_values(self, values: RowValues, offset: ArrayLike = 0.0) -> Evaluation:
         """What one candidate's values in the task's scenarios mean, a row a scenario.
 
         The offset is added to the states on arrival [m, m/s].
@@ -334,7 +334,7 @@ def _ends(values: Array) -> Array:
 
 def simulate(
     simulation: Simulation, coefficients: Array, move: Array, errors: Array, threads: int = 1
-) -> Values:
+) -> RowValues:
     """Values of rows that have coefficients, the `row` of a task and errors of their own."""
     COST.candidates += len(coefficients)
     function = _compiled_values(simulation)
@@ -343,7 +343,7 @@ def simulate(
         copy_rows,
         threads,
     )
-    return Values(energy[:, 0], arrival, limited)
+    return RowValues(energy[:, 0], arrival, limited)
 
 
 @lru_cache(maxsize=RECENT)

@@ -20,7 +20,7 @@ from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.cost import COST
 from quietarm.ocp.limits import ask_for_jerk
 from quietarm.ocp.simulation.collocation import NODES
-from quietarm.ocp.simulation.evaluator import Values
+from quietarm.ocp.simulation.evaluator import RowValues
 from quietarm.ocp.simulation.rollout import Simulation, places_of
 from quietarm.ocp.simulation.rows import RowFunction, copy_rows
 from quietarm.ocp.solvers.derivatives import compile_arrivals, compile_derivatives
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 class MotionMultipliers:
     """Weights of the sum of energy, arrival and limited values whose Hessian is asked for.
 
-    Shapes are those of `Values`; or with an axis of scenarios after the first.
+    Shapes are those of `RowValues`; or with an axis of scenarios after the first.
     """
 
     energy: Array
@@ -50,7 +50,7 @@ class MotionMultipliers:
 
 
 @dataclass(frozen=True)
-class Derivatives(Values):
+class Derivatives(RowValues):
     """The same with derivatives by the coefficients, along a last axis of each.
 
     The Hessian, (rows, coefficients, coefficients), is of the sum that the multipliers weigh. The

@@ -29,7 +29,7 @@ from quietarm.ocp.simulation.evaluator import MOST_STEPS_OF_CSE
 from quietarm.ocp.simulation.objective import quadratic, quadratic_zeros
 from quietarm.ocp.simulation.rollout import Simulation, march, modes_at_nodes
 from quietarm.ocp.simulation.rows import join, widen
-from quietarm.ocp.solvers.node import Node, Table, path_of, product, transpose
+from quietarm.ocp.solvers.node import Node, PathTable, path_of, product, transpose
 from quietarm.ocp.uncertainty import perturb_plant
 
 
@@ -228,7 +228,7 @@ class _Differentiated:
             for j in range(NODES)
         ]
 
-    def along(self, table: Table) -> list[Table]:
+    def along(self, table: PathTable) -> list[PathTable]:
         """A table at each node, its entries once for each coefficient, side by side."""
         steps = self.shape[1]
         entries = {place: ca.horzsplit(entry, steps) for place, entry in table.items()}

@@ -153,26 +153,43 @@ class _Linearised:
         least = np.maximum(-reach, self._box[0] - self.coefficients)
         arrival = np.pad(self.arrival_table, ((0, 0), (0, 1)))
         rows = np.column_stack([limits.table[chosen], -limits.give[chosen]])
+        table = np.vstack([arrival, rows])
         unlimited = np.full(len(chosen), np.inf)
-        upper = [most, [np.inf], self.allowed - self.arrival, limits.room[chosen]]
-        lower = [least, [-1.0], -self.allowed - self.arrival, -unlimited]
-        marks = np.zeros(size + 1 + len(arrival) + len(chosen), dtype=np.int32)
+        upper = np.concatenate([most, [np.inf], self.allowed - self.arrival, limits.room[chosen]])
+        lower = np.concatenate([least, [-1.0], -self.allowed - self.arrival, -unlimited])
+        marks = np.zeros(len(upper), dtype=np.int32)
         equality = 5  # by DAQP's convention, as is `solved`
         if self.allowed == 0:
             marks[size + 1 : size + 1 + len(arrival)] = equality
         # Curvature that makes a linear program a quadratic one, whose answer is unique; the
         # excess differs by less than 1e-5 from that of the linear program.
         tie = 1e-3
+        excess = np.append(np.zeros(size), 1.0)
         solution, _, flag, _ = daqp.solve(
-            tie * np.eye(size + 1),
-            np.append(np.zeros(size), 1.0),
-            np.vstack([arrival, rows]),
-            np.concatenate(upper),
-            np.concatenate(lower),
-            marks,
+            tie * np.eye(size + 1), excess, table, upper, lower, marks
         )
         solved = 1
-        return np.asarray(solution) if flag == solved else None
+        if flag == solved:
+            return np.asarray(solution)
+        # Of a slow limit the plain motion is many times above, rows have entries of 1e4 and more:
+        # by these and the curvature DAQP comes no nearer to them than 1e-5.
+        return _solve_linear(excess, table, upper, lower)
+
+
+def _solve_linear(costs: Array, table: Array, upper: Array, lower: Array) -> Array | None:
+    """Of a linear program the solution by HiGHS, which scales it; None where there is none.
+
+    Bounds are of the unknowns, then of the rows of the table.
+    """
+    from scipy.optimize import Bounds, LinearConstraint, milp  # not at the top: takes long to load
+
+    size = len(costs)
+    result = milp(
+        costs,
+        bounds=Bounds(lower[:size], upper[:size]),
+        constraints=LinearConstraint(table, lower[size:], upper[size:]),
+    )
+    return result.x
 
 
 class _Rows(NamedTuple):

@@ -71,14 +71,14 @@ def _on_one_thread() -> Iterator[None]:
             os.environ[name] = chosen
 
 
-Bounds = tuple[NDArray[np.float64], NDArray[np.float64]]
+Sides = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def run_ipopt(
     solver: Compiled,
     start: NDArray[np.float64],
-    bounds: Bounds,
-    constraint_bounds: Bounds,
+    bounds: Sides,
+    constraint_bounds: Sides,
     parameters: NDArray[np.float64],
 ) -> Stop:
     """Run IPOPT from a point, within lower and upper bounds of unknowns and of constraints."""

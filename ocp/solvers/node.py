@@ -27,7 +27,7 @@ from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
 Shape = tuple[int, int]
-Table = dict[tuple[int, int], ca.MX]
+PathTable = dict[tuple[int, int], ca.MX]
 
 
 def symbols(count: int, shape: Shape) -> list[ca.MX]:
@@ -35,7 +35,7 @@ def symbols(count: int, shape: Shape) -> list[ca.MX]:
     return [ca.MX.sym("x", *shape) for _ in range(count)]
 
 
-def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
+def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> PathTable:
     """First derivatives of a column of expressions, entry by entry."""
     if not column:
         return {}
@@ -52,7 +52,7 @@ def jacobian(column: Sequence[ca.MX], by: Sequence[ca.MX]) -> Table:
     }
 
 
-def hessian(expression: Any, by: Sequence[ca.MX], earlier_first: bool = False) -> Table:
+def hessian(expression: Any, by: Sequence[ca.MX], earlier_first: bool = False) -> PathTable:
     """Second derivatives of an expression, of which one of each pair is computed.
 
     It is the derivative along the later symbol of that by the earlier one, or else the other way
@@ -72,12 +72,12 @@ def hessian(expression: Any, by: Sequence[ca.MX], earlier_first: bool = False) -
     return half | transpose(half)
 
 
-def transpose(table: Table) -> Table:
+def transpose(table: PathTable) -> PathTable:
     """Rows for columns."""
     return {(k, i): entry for (i, k), entry in table.items()}
 
 
-def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
+def product(table: PathTable, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
     """A table of so many rows times a column."""
     sums = dict[int, ca.MX]()
     for (i, k), entry in table.items():
@@ -92,7 +92,7 @@ def product(table: Table, column: Sequence[ca.MX], rows: int) -> list[ca.MX]:
 class TableFunction:
     """Tables as a function of their symbols."""
 
-    def __init__(self, inputs: Sequence[ca.MX], *tables: Table) -> None:
+    def __init__(self, inputs: Sequence[ca.MX], *tables: PathTable) -> None:
         self._places = [list(table) for table in tables]
         entries = [entry for table in tables for entry in table.values()]
         self._function = ca.Function("tables", [*inputs], entries, {"cse": True})
@@ -154,7 +154,7 @@ class Path:
 
     def hessian(
         self, a: Sequence[ca.MX], move: Sequence[ca.MX], multipliers: Sequence[ca.MX]
-    ) -> Table:
+    ) -> PathTable:
         """Second derivatives by the coefficients of the sum of multipliers times y."""
         (table,) = self._hessian(a, [self._times], move, multipliers)
         return table
@@ -274,7 +274,7 @@ class Node:
             [*inputs, *multipliers], hessian(lagrangian, v, by_place_first)
         )
 
-    def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], Table, Table]:
+    def evaluate(self, point: Sequence[ca.MX]) -> tuple[list[ca.MX], PathTable, PathTable]:
         """The outputs, the Jacobian of f by y, and that of the outputs by v.
 
         A point is v, then the move and the errors.
@@ -282,7 +282,7 @@ class Node:
         outputs, f_y, o_v = self._first(point)
         return list(outputs.values()), f_y, o_v
 
-    def hessian(self, point: Sequence[ca.MX], multipliers: Sequence[ca.MX]) -> Table:
+    def hessian(self, point: Sequence[ca.MX], multipliers: Sequence[ca.MX]) -> PathTable:
         """Second derivatives by v of the sum of multipliers times f, then outputs."""
         (table,) = self._second(point, multipliers)
         return table

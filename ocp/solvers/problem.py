@@ -15,7 +15,7 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
-from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
+from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, RowValues
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.batch import Batch, Derivatives, batch_of
 from quietarm.ocp.task import PointToPoint
@@ -168,7 +168,7 @@ class Program:
         """One candidate in all scenarios."""
         return evaluate([self], coefficients[None])[0]
 
-    def measure(self, values: Values, offset: Array | float = 0.0) -> Evaluation:
+    def measure(self, values: RowValues, offset: Array | float = 0.0) -> Evaluation:
         """What one candidate's values in all scenarios mean, with this added to its arrivals."""
         return self.evaluator.of_values(values, offset)
 

@@ -18,7 +18,7 @@ from quietarm.studies.reproduce.paper import (
     SIX,
     STUDIED,
     Case,
-    Row,
+    PaperRow,
     paper_plan,
 )
 from quietarm.studies.reproduce.recompute import BEYOND_SIX, Reproduction
@@ -212,7 +212,7 @@ def _paths(result: Reproduction) -> Outcome:
 
 
 def _six(
-    result: Reproduction, cells: Callable[[Row, Searched, Searched], dict[str, Any]]
+    result: Reproduction, cells: Callable[[PaperRow, Searched, Searched], dict[str, Any]]
 ) -> pd.DataFrame:
     """A table of the six conditions: of the paper's row, and its search with both inputs."""
     rows = list[dict[str, Any]]()

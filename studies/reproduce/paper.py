@@ -53,7 +53,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Row:
+class PaperRow:
     """A row of Tables 2, 3, 5 or 6: energies [J]."""
 
     table: int
@@ -78,10 +78,10 @@ def _angle(text: str) -> float:
     return pi * share.numerator / share.denominator
 
 
-def _row(cells: dict[str, str]) -> Row:
+def _row(cells: dict[str, str]) -> PaperRow:
     case = _case(cells["plant"], cells["start"], cells["target"], cells["duration"])
     earlier = float(cells["earlier"]) if cells["earlier"] else None
-    return Row(
+    return PaperRow(
         int(cells["table"]),
         case,
         int(cells["terms"]),
@@ -92,7 +92,7 @@ def _row(cells: dict[str, str]) -> Row:
 
 with Path(__file__).with_name("printed.csv").open(encoding="utf-8") as _file:
     _PRINTED = [(_row(cells), cells) for cells in csv.DictReader(_file)]
-ROWS: tuple[Row, ...] = tuple(row for row, _ in _PRINTED)
+ROWS: tuple[PaperRow, ...] = tuple(row for row, _ in _PRINTED)
 SIX = tuple(row for row in ROWS if row.earlier_energy is not None)
 """Tables 3 and 6: a row for each driving condition."""
 CONDITIONS: tuple[Case, ...] = tuple(row.condition for row in SIX)

@@ -18,7 +18,7 @@ from quietarm.studies.reproduce.paper import (
     ROWS,
     SINGLE_LINK_SIXTH,
     Case,
-    Row,
+    PaperRow,
     paper_plan,
 )
 from quietarm.studies.reproduce.recompute import FREQUENCY_ERROR, Reproduction
@@ -42,7 +42,7 @@ def paper_table(result: Reproduction, number: int) -> pd.DataFrame:
     return pd.DataFrame(rows).dropna(axis=1, how="all")
 
 
-def _row(result: Reproduction, row: Row) -> dict[str, object]:
+def _row(result: Reproduction, row: PaperRow) -> dict[str, object]:
     """Names and figures of a row; energies [J], residuals [mm]."""
     case = row.condition
     terms = row.terms

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quietarm.interrupts import note_interrupts
-from quietarm.metaheuristics.parallel import LostWorkersError, reach, side_by_side
+from quietarm.metaheuristics.parallel import LostWorkersError, reach_scheduler, side_by_side
 from quietarm.ocp import PointToPoint, QuietarmError, Solver, Sqp
 from quietarm.ocp.checks import has_no, several, takes
 from quietarm.ocp.planning.choose_profile import choose_profile
@@ -94,7 +94,7 @@ def sweep(
     settings = PlanSettings.of(residual_limit, bound, solver)
     profile = choose_profile(task) if profile is None else profile
     if not Path(path).exists():
-        reach(workers)  # before anything is written
+        reach_scheduler(workers)  # before anything is written
     store = Store.of(
         Path(path),
         Definition(

@@ -2,6 +2,9 @@
 
 from pathlib import Path
 
+import casadi as ca
+import numpy as np
+
 INERTIAL = (
     '<inertial><origin xyz="0.2 0 0"/><mass value="2"/>'
     '<inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>'
@@ -48,3 +51,9 @@ def write_robot(folder: Path, urdf: str, entries: str = FILE, limits: str = "") 
         entries += "limits: joint_limits.yaml\n"
     (folder / "robot.yaml").write_text(entries)
     return folder / "robot.yaml"
+
+
+def torques_of(robot, positions, speeds, accelerations):
+    """Torques of all joints of a robot by its own equations, without springs and dampers."""
+    motion = (ca.SX(ca.DM(row)) for row in (positions, speeds, accelerations))
+    return np.array(ca.evalf(robot.dynamics.torques(*motion))).ravel()

@@ -26,3 +26,11 @@ def words_of(robot):
 def with_elbow(more, urdf=URDF):
     """The URDF with more in its last joint."""
     return urdf.replace("</joint></robot>", f"{more}</joint></robot>")
+
+
+def limits_of(folder, urdf, entries=""):
+    """The limits of a robot whose file takes those of its URDF."""
+    (folder / "robot.urdf").write_text(urdf)
+    file = folder / "robot.yaml"
+    file.write_text(f"urdf: robot.urdf\nbase: {{stiffness: 2e4}}\nlimits: urdf\n{entries}")
+    return qa.Robot.load(file).limits

@@ -29,10 +29,10 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.escapes import one_line
-from quietarm.ocp.front.tradeoff import Progress, no_report
 from quietarm.ocp.limits import QUANTITIES, quantities_of
 from quietarm.ocp.planning.named_profiles import families, profile_of
 from quietarm.ocp.task import OF_MOVES
+from quietarm.ocp.told_progress import Progress, no_report
 from quietarm.ocp.window import default_window
 from quietarm.views.explore.move_library import Library
 from quietarm.views.formats.formats import export_plan

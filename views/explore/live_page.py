@@ -17,8 +17,8 @@ import numpy as np
 
 from quietarm.models import Plant
 from quietarm.ocp import Front, Plan, evaluate_coefficients, evaluate_robustness
-from quietarm.ocp.front.tradeoff import Progress, no_report
 from quietarm.ocp.planning.named_profiles import families
+from quietarm.ocp.told_progress import Progress, no_report
 from quietarm.ocp.uncertainty import FREQUENCY, check_ranges
 from quietarm.views.explore.by_hand import (
     FILES,

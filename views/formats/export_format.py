@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from math import inf
@@ -26,6 +26,7 @@ from quietarm.ocp.checks import (
     whole,
     with_article,
 )
+from quietarm.ocp.told_progress import Progress
 
 PLAN = "plan"
 FRONT = "front"
@@ -42,7 +43,6 @@ _OPTIONS = ("output", "format", "form", "plans", "plan", "path", "report", "quie
 Content = str | bytes
 Answers = Mapping[str, Any] | Sequence[Any]
 """Plans, fronts, or the moves of a sweep; a mapping gives their labels."""
-Progress = Callable[[int, int], object]
 
 
 class Exported(NamedTuple):

@@ -19,6 +19,8 @@ from quietarm.views.report.words import raised, window_words
 from quietarm.views.tips import tip_scale
 
 Array = NDArray[np.float64]
+LOGARITHMIC_FROM = 5.0
+"""Residuals that span less than this factor are drawn on a linear axis."""
 
 NARROW = 3.85
 """Width of a figure for a phone [inch]: at 390 pixels its letters of 7 points are 9 high."""

@@ -17,6 +17,7 @@ from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.rest import rest_of
 from quietarm.views.pictures.axes import (
+    LOGARITHMIC_FROM,
     TITLE,
     axes_or_new,
     draw_front,
@@ -35,8 +36,6 @@ from quietarm.views.tips import tip_scale, tip_words
 
 _MOST_NAMED = 10
 """More fronts than this are drawn without a name."""
-_LOGARITHMIC_FROM = 5.0
-"""Residuals that span less than this factor are drawn on a linear axis."""
 
 
 @takes(fronts=[Front])
@@ -109,7 +108,7 @@ def draw_fronts(
         all_residuals = [
             max(point.residual, rest_of(front.task)) for front in fronts for point in front.points
         ]
-        logarithmic(ax, all_residuals, least_span=_LOGARITHMIC_FROM)
+        logarithmic(ax, all_residuals, least_span=LOGARITHMIC_FROM)
     name_objectives(ax, tip_unit)
     if len(fronts) <= _MOST_NAMED and len(ax.get_legend_handles_labels()[1]) > 1:
         ax.legend(fontsize=8)
@@ -289,5 +288,5 @@ def polish_figure(before: Front, polish: Polish) -> Figure:
     label = residual_label(tip_unit, before.task.residual_window)
     saved.set(xlabel=label, ylabel="energy saved [%]")
     saved.set_ylim(bottom=0)
-    logarithmic(saved, residuals, least_span=_LOGARITHMIC_FROM)
+    logarithmic(saved, residuals, least_span=LOGARITHMIC_FROM)
     return figure

@@ -14,12 +14,9 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.rest import is_at_rest, rest_of
-from quietarm.views.pictures.axes import axes_or_new, logarithmic, name_objectives
+from quietarm.views.pictures.axes import LOGARITHMIC_FROM, axes_or_new, logarithmic, name_objectives
 from quietarm.views.pictures.grammar import look
 from quietarm.views.tips import tip_scale
-
-_LOGARITHMIC_FROM = 5.0
-"""Residuals that span less than this factor are drawn on a linear axis."""
 
 
 @takes(fronts=[Front])
@@ -66,7 +63,7 @@ def draw_peak(fronts: Sequence[Front], ax: Axes | None = None, peak: int = 0) ->
     logarithmic(
         ax,
         np.concatenate([np.maximum(table[:, 0], rest) for table in values]),
-        least_span=_LOGARITHMIC_FROM,
+        least_span=LOGARITHMIC_FROM,
     )
     name_objectives(ax, residual.unit, first.task.residual_window)
     assert marks is not None

@@ -133,7 +133,7 @@ def percents(shares: Sequence[float]) -> str:
     return f"{' to '.join(dict.fromkeys(words))} %"
 
 
-def listed(words: Sequence[str]) -> str:
+def in_a_sentence(words: Sequence[str]) -> str:
     """Words with commas, and an "and" before the last."""
     return joined(words)
 
@@ -142,7 +142,7 @@ def _environment() -> Environment:
     environment = templates(finalize=_words)
     filters: dict[str, Any] = {
         "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
-        "listed": listed, "counted": counted, "code": code,
+        "listed": in_a_sentence, "counted": counted, "code": code,
     }  # fmt: skip
     environment.filters.update(filters)
     return environment

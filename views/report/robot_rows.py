@@ -21,7 +21,7 @@ WARNING = "warning"
 """The name of a row with a note on the robot."""
 _PLACES = (0.0, 0.5, 1.0)
 """Of a path, at which modes and sag are shown."""
-_SEEN = 1e-6
+_STRAIGHT = 1e-6
 """By which a spline leaves straight lines [rad or m]; less is rounding."""
 _MORE = 2
 """Modes that are shown beyond those that are followed."""
@@ -180,7 +180,7 @@ def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
     rows = [("path", words) for words in path.remarks]
     units = [WAY.of(robot.kind_of(name)) for name in robot.joints]
     off = sorted(zip(path.off_straight.tolist(), units, robot.joints), reverse=True)
-    seen = [(size, unit, name) for size, unit, name in off if size > _SEEN]
+    seen = [(size, unit, name) for size, unit, name in off if size > _STRAIGHT]
     if not seen:
         return rows
     (size, unit, name), *others = seen

@@ -11,7 +11,7 @@ from quietarm.machine.identify.fits.bounded_steps import bounded_step, variances
 from quietarm.machine.identify.fits.swing_model import SwingModel
 
 Array = NDArray[np.float64]
-Bounds = tuple[Array, Array]
+Box = tuple[Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ def fit(model: SwingModel, start: Array, lower: Array, upper: Array, frequency: 
     return Fit(p, of_p, model, swinging.T, residual.T, delay, inflation)
 
 
-def _by_huber(model: SwingModel, start: Array, bounds: Bounds) -> tuple[Array, Array]:
+def _by_huber(model: SwingModel, start: Array, bounds: Box) -> tuple[Array, Array]:
     """Parameters and amplitudes, and the deviation of each signal's residuals (signals, 1)."""
     beyond = 2.5  # deviations, from which on residuals count by their size alone (Huber's)
     settled = 0.02  # a change of the weights that changes nothing more
@@ -115,7 +115,7 @@ def _inflation(slopes: Array, variances: Array, count: int, signals: int) -> Arr
     return np.sqrt(variances[:count] / variances_of(known)[:count])
 
 
-def _search(model: SwingModel, p: Array, weights: Array, bounds: Bounds, most_steps: int) -> Array:
+def _search(model: SwingModel, p: Array, weights: Array, bounds: Box, most_steps: int) -> Array:
     """Parameters and amplitudes of the least weighted squares, by Levenberg and Marquardt's steps.
 
     Amplitudes are the best of the parameters at every step (variable projection), so that steps are

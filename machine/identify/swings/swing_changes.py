@@ -22,7 +22,7 @@ from quietarm.machine.identify.swings.ring_downs import moves
 from quietarm.machine.recordings.recording import LEAST_ROWS
 
 Array = NDArray[np.float64]
-Spread = dict[str, tuple[float, float]]
+Spreads = dict[str, tuple[float, float]]
 MET = 0.1
 """Misfit beside the noise that a swing may have to be called met."""
 
@@ -79,7 +79,7 @@ def _cause_of_changes(fitter: PartFitter, part: Part) -> str:
     )
 
 
-def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spread) -> Spread:
+def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spreads) -> Spreads:
     """What parameters may be of all of a part, where they change after it is saturated no more."""
     seen = pieces[-1].end - pieces[0].begin
     unseen = (pieces[0].begin - part.begin) / seen
@@ -107,7 +107,7 @@ def with_both(fitter: PartFitter, beat: Part, changes: Part) -> Part:
     return replace(beat, spread=spread)
 
 
-def _told_apart(fitter: PartFitter, part: Part, rows: slice) -> tuple[list[Part], Spread]:
+def _told_apart(fitter: PartFitter, part: Part, rows: slice) -> tuple[list[Part], Spreads]:
     """Pieces of a swing whose parameters differ, and of each parameter the least and the largest.
 
     Fewer and longer pieces are more certain: they are tried where many tell nothing.
@@ -231,7 +231,7 @@ def _of_the_louder(fitter: PartFitter, part: Part, close: CloseModes, start: Arr
     slowest = abs(fitter.response.eigenvalues(start)[0][0])
     values = dict[str, float]()
     deviations = dict[str, float]()
-    spread = Spread()
+    spread = Spreads()
     for k, name in enumerate(fitter.names):
         factor = start[k] / slowest if fitter.are_rates[k] else 1.0
         is_damping = fitter.are_dampings[k]

@@ -12,7 +12,9 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
+from numpy.typing import ArrayLike
 
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.mechanism import GROUND, Mechanism, RigidBody
 from quietarm.models.robot.frames import Frame, skew_of
@@ -156,28 +158,32 @@ class Dynamics:
             by_joint[self._order.index(leader)] += follower.multiplier * torques[number]
         return by_joint
 
+    def at_rest(self, x: ArrayLike) -> tuple[Array, Array]:
+        """Torques of all joints at rest, and their slopes by the springs' angles."""
+        torques, slopes = self._at_rest(x)
+        return torques.ravel(), slopes
+
     @cached_property
-    def at_rest(self) -> ca.Function:
-        """(x) -> torques at rest, their slopes by the springs' angles."""
+    def _at_rest(self) -> Compiled:
         x = ca.SX.sym("x", self.size)
         still = ca.SX(self.size, 1)
         torque = self.torques(x, still, still)
         slopes = ca.densify(ca.jacobian(torque, x)[:, self.driven :])
-        return ca.Function("at_rest", [x], [ca.densify(torque), slopes], {"cse": True})
+        outputs = [ca.densify(torque), slopes]
+        return Compiled(lambda: ca.Function("at_rest", [x], outputs, {"cse": True}))
+
+    def masses(self, x: ArrayLike) -> Array:
+        """The mass matrix of all joints."""
+        (masses,) = self._masses(x)
+        return masses
 
     @cached_property
-    def masses(self) -> ca.Function:
-        """(x) -> mass matrix."""
+    def _masses(self) -> Compiled:
         x = ca.SX.sym("x", self.size)
         a = ca.SX.sym("a", self.size)
         torque = self.torques(x, ca.SX(self.size, 1), a)
-        return ca.Function("masses", [x], [ca.densify(ca.jacobian(torque, a))], {"cse": True})
-
-    @cached_property
-    def inverse(self) -> ca.Function:
-        """(x, v, a) -> torques of all joints, without springs and dampers."""
-        x, v, a = (ca.SX.sym(name, self.size) for name in "xva")
-        return ca.Function("inverse", [x, v, a], [ca.densify(self.torques(x, v, a))], {"cse": True})
+        masses = ca.densify(ca.jacobian(torque, a))
+        return Compiled(lambda: ca.Function("masses", [x], [masses], {"cse": True}))
 
     def sag(self, q: Array, begin: Array | None = None) -> Array:
         """Angles of the springs at rest, by Newton from where they may be.
@@ -203,8 +209,8 @@ class Dynamics:
         """What is missing from equilibrium [N m], and its slopes: springs and gravity."""
         torque, slopes = self.at_rest(np.concatenate([q, p]))
         stiffness = self.mechanism.stiffness
-        excess = torque.full().ravel()[self.driven :] + stiffness * p
-        return excess, slopes.full()[self.driven :] + np.diag(stiffness)
+        excess = torque[self.driven :] + stiffness * p
+        return excess, slopes[self.driven :] + np.diag(stiffness)
 
 
 _MOST_NEWTON = 50

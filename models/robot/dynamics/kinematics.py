@@ -7,6 +7,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.frames import rotation_of
@@ -47,21 +48,22 @@ class Kinematics:
 
     def pose(self, q: Array) -> Pose:
         """Where the link stands."""
-        rotation, origin = (entry.full() for entry in self._place(q))
+        rotation, origin = self._place(q)
         return Pose(rotation, origin.ravel())
 
     def offset(self, q: Array, pose: Pose) -> tuple[Array, Array]:
         """How far the link is from a pose [m, rad], six numbers, and their slopes by q."""
         offset, slopes = self._offset(q, pose.rotation, pose.origin)
-        return offset.full().ravel(), slopes.full()
+        return offset.ravel(), slopes
 
     @cached_property
-    def _place(self) -> ca.Function:
+    def _place(self) -> Compiled:
         q = ca.SX.sym("q", self.dynamics.driven)
-        return ca.Function("place", [q], [*self._symbols(q)], {"cse": True})
+        outputs = [*self._symbols(q)]
+        return Compiled(lambda: ca.Function("place", [q], outputs, {"cse": True}))
 
     @cached_property
-    def _offset(self) -> ca.Function:
+    def _offset(self) -> Compiled:
         q = ca.SX.sym("q", self.dynamics.driven)
         wanted = ca.SX.sym("rotation", 3, 3)
         target = ca.SX.sym("origin", 3)
@@ -73,8 +75,9 @@ class Kinematics:
             turned[1, 0] - turned[0, 1],
         )
         offset = ca.vertcat(origin - target, turns / 2)
-        slopes = ca.densify(ca.jacobian(offset, q))
-        return ca.Function("offset", [q, wanted, target], [offset, slopes], {"cse": True})
+        inputs = [q, wanted, target]
+        outputs = [ca.densify(offset), ca.densify(ca.jacobian(offset, q))]
+        return Compiled(lambda: ca.Function("offset", inputs, outputs, {"cse": True}))
 
     def _symbols(self, q: ca.SX) -> tuple[ca.SX, ca.SX]:
         place = self.dynamics.mechanism.links[self.link]

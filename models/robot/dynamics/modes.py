@@ -8,6 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics, SoftSpringError
 from quietarm.models.robot.elastic.flexibility import Measured
@@ -55,7 +56,7 @@ def modes_at(dynamics: Dynamics, q: Array, p: Array | None = None) -> tuple[Arra
     """Frequencies [rad/s] and shapes of the modes about the sag, driven joints held."""
     p = sag_at(dynamics, q) if p is None else p
     _, stiffness = dynamics.stiffness_at(q, p)
-    masses = dynamics.masses(np.concatenate([q, p])).full()[dynamics.driven :, dynamics.driven :]
+    masses = dynamics.masses(np.concatenate([q, p]))[dynamics.driven :, dynamics.driven :]
     squares, shapes = spectrum((stiffness + stiffness.T) / 2, masses)
     if squares[0] <= 0:
         weakest = dynamics.mechanism.spring_names[int(np.abs(shapes[:, 0]).argmax())]
@@ -76,7 +77,8 @@ def tip_offset(dynamics: Dynamics, tip: Any, q: Array, p: Array) -> Array:
     """Where the tip is, seen in its frame on the robot that does not bend [m]."""
     x = ca.SX.sym("x", dynamics.size)
     rotation, origin = dynamics.place(tip, x)
-    place = ca.Function("place", [x], [rotation, origin])
-    straight, before = (entry.full() for entry in place(np.concatenate([q, 0 * p])))
-    _, bent = (entry.full() for entry in place(np.concatenate([q, p])))
+    outputs = [ca.densify(rotation), ca.densify(origin)]
+    place = Compiled(lambda: ca.Function("place", [x], outputs))
+    straight, before = place(np.concatenate([q, 0 * p]))
+    _, bent = place(np.concatenate([q, p]))
     return (straight.T @ (bent - before)).ravel()

@@ -109,7 +109,7 @@ class FullRobot:
         sag = self.at_rest(place)
         positions = np.concatenate([self._path([place])[0], sag])
         driven = self._dynamics.driven
-        masses = self._dynamics.masses(positions).full()[driven:, driven:]
+        masses = self._dynamics.masses(positions)[driven:, driven:]
         along = shapes.T @ masses
         angles, rates = np.split(state, 2)
         moving = np.column_stack([angles - sag, rates])

@@ -24,9 +24,9 @@ from quietarm.models.robot.path.piecewise import (
     NoFitError,
     Piecewise,
     Place,
-    cut,
     fit,
     interpolate,
+    without_small_terms,
 )
 
 ACCURACY = 1e-9
@@ -246,7 +246,7 @@ def variations_of(
         return by_place.reshape(len(places), -1)
 
     scales = layout.scales(layout.columns(nominal.at(np.linspace(0.0, 1.0, NODES))))
-    fitted = cut(
+    fitted = without_small_terms(
         interpolate(terms_of, tables.knots, NODES),
         np.tile(ACCURACY_OF_CHANGES * scales, len(powers)),
     )
@@ -305,7 +305,7 @@ def _slopes(knots: Array, tips: Array) -> Array:
     return slopes.reshape(len(slopes), -1, *tips.shape[2:])
 
 
-def reach() -> tuple[float, float]:
+def range_of_tables() -> tuple[float, float]:
     """The places for which there are tables."""
     return (-BEYOND, 1 + BEYOND)
 

@@ -19,6 +19,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.modes import modes_at, sag_at
@@ -83,11 +84,10 @@ class Reduction:
         along = self._rates(q, sag, slope, bend)
         positions = np.hstack([q, sag])
         first, second, rows = along
-        outputs = self._coefficients.map(len(places))(
-            positions.T, np.hstack([slope, first]).T, np.hstack([bend, second]).T
-        )
+        by_place = Compiled(lambda: self._coefficients.function.map(len(places)))
+        outputs = by_place(positions.T, np.hstack([slope, first]).T, np.hstack([bend, second]).T)
         raw = {
-            name: self._by_place(name, output.full(), len(places))
+            name: self._by_place(name, output, len(places))
             for name, output in zip(OF_TORQUES, outputs)
         }
         return self._by_modes(raw, first, rows)
@@ -128,7 +128,7 @@ class Reduction:
         return by_place[..., 0] if name in FORCING else by_place
 
     @cached_property
-    def _coefficients(self) -> ca.Function:
+    def _coefficients(self) -> Compiled:
         """(positions, their first and second slopes) -> `OF_TORQUES`, of all joints."""
         dynamics = self.dynamics
         size = dynamics.size
@@ -164,7 +164,8 @@ class Reduction:
             along(masses, unknown),
         ]
         dense = [ca.densify(output) for output in outputs]
-        return ca.Function("coefficients", [x, slope, bend], dense, {"cse": True})
+        inputs = [x, slope, bend]
+        return Compiled(lambda: ca.Function("coefficients", inputs, dense, {"cse": True}))
 
     def _rates(self, q: Array, sag: Array, slope: Array, bend: Array) -> tuple[Array, Array, Array]:
         """First and second slopes of the sag by s, and displacements of the tip by the modes."""
@@ -174,16 +175,16 @@ class Reduction:
             nothing = np.zeros(len(p))
             _, stiffness = self.dynamics.stiffness_at(position, p)
             by_q, _ = self._second(x, np.concatenate([q1, nothing]), np.concatenate([q2, nothing]))
-            p1 = -np.linalg.solve(stiffness, by_q.full().ravel())
+            p1 = -np.linalg.solve(stiffness, by_q.ravel())
             _, curved = self._second(x, np.concatenate([q1, p1]), np.concatenate([q2, nothing]))
-            p2 = -np.linalg.solve(stiffness, curved.full().ravel())
+            p2 = -np.linalg.solve(stiffness, curved.ravel())
             first.append(p1)
             second.append(p2)
             rows.append(self._tip_rows(position, p))
         return np.array(first), np.array(second), np.array(rows)
 
     @cached_property
-    def _second(self) -> ca.Function:
+    def _second(self) -> Compiled:
         """(x, its first slope, its second) -> the same of the springs' torques at rest."""
         dynamics = self.dynamics
         x, slope, bend = (ca.SX.sym(name, dynamics.size) for name in ("x", "slope", "bend"))
@@ -192,22 +193,23 @@ class Reduction:
         first = ca.jtimes(torque, x, slope)
         second = ca.jtimes(first, x, slope) + ca.jtimes(torque, x, bend)
         dense = [ca.densify(first), ca.densify(second)]
-        return ca.Function("second", [x, slope, bend], dense, {"cse": True})
+        inputs = [x, slope, bend]
+        return Compiled(lambda: ca.Function("second", inputs, dense, {"cse": True}))
 
     @cached_property
-    def _tip_slopes(self) -> ca.Function:
+    def _tip_slopes(self) -> Compiled:
         """(x) -> slopes of the tip's place by the springs' angles, in the straight tip's frame."""
         dynamics = self.dynamics
         x = ca.SX.sym("x", dynamics.size)
         _, origin = dynamics.place(self._tip, x)
         straight = ca.vertcat(x[: dynamics.driven], ca.SX(dynamics.sprung, 1))
         rotation, _ = dynamics.place(self._tip, straight)
-        slopes = rotation.T @ ca.jacobian(origin, x)[:, dynamics.driven :]
-        return ca.Function("tip_slopes", [x], [ca.densify(slopes)], {"cse": True})
+        slopes = ca.densify(rotation.T @ ca.jacobian(origin, x)[:, dynamics.driven :])
+        return Compiled(lambda: ca.Function("tip_slopes", [x], [slopes], {"cse": True}))
 
     def _tip_rows(self, q: Array, p: Array) -> Array:
         """Displacements of the tip by the modes, shape (directions, modes)."""
-        slopes = self._tip_slopes(np.concatenate([q, p])).full()
+        (slopes,) = self._tip_slopes(np.concatenate([q, p]))
         return slopes[self.directions] @ self.shapes
 
     def _scales(self, rows: Array) -> Array:

@@ -8,6 +8,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from quietarm.models.compiled import Compiled
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
@@ -98,14 +99,15 @@ class StickFigure:
         rows = self._tables.at(float(place)).values(self._tables.tips)
         amplitudes, *_ = np.linalg.lstsq(rows.astype(float), tips, rcond=None)
         x = np.concatenate([q, p + self._shapes @ amplitudes])
-        return self._origins_of(x).full().T
+        (origins,) = self._origins_of(x)
+        return origins.T
 
-    def _function(self) -> ca.Function:
+    def _function(self) -> Compiled:
         x = ca.SX.sym("x", self._dynamics.size)
         places = [(number, Frame()) for number in range(len(self._bodies))]
         origins = [self._dynamics.place(place, x)[1] for place in [*places, self._tip]]
         columns = ca.densify(ca.horzcat(ca.SX(3, 1), *origins))
-        return ca.Function("origins", [x], [columns], {"cse": True})
+        return Compiled(lambda: ca.Function("origins", [x], [columns], {"cse": True}))
 
     def _seen(self) -> tuple[Array, Array]:
         """Columns by which a point in space is drawn, and the corners of the floor."""

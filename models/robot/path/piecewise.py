@@ -102,7 +102,7 @@ def fit(
     pieces = [one for piece in ends for one in _pieces(function, piece, largest, _MOST_HALVINGS)]
     found = np.array([begin for begin, _, _ in pieces] + [pieces[-1][1]])
     coefficients = np.array([terms for _, _, terms in pieces])
-    return Piecewise(found, cut(coefficients, largest))
+    return Piecewise(found, without_small_terms(coefficients, largest))
 
 
 def _pieces(
@@ -127,7 +127,7 @@ def _pieces(
     ]
 
 
-def cut(coefficients: Array, largest: Array) -> Array:
+def without_small_terms(coefficients: Array, largest: Array) -> Array:
     """Without the last terms of each function that come to less than half its largest error."""
     tails = np.cumsum(np.abs(coefficients[:, ::-1]), axis=1)[:, ::-1]
     shortened = np.where(tails > largest / 2, coefficients, 0.0)

@@ -70,6 +70,32 @@ def followers_of(urdf: Urdf, held: Collection[str] = ()) -> dict[str, Following]
     }
 
 
+def driven_joints(
+    urdf: Urdf, named: Collection[str] = (), passive: Collection[str] = ()
+) -> tuple[str, ...]:
+    """The joints that are driven: those that are named, or all that move but passive ones.
+
+    Those that mimic others follow them.
+    """
+    leading = (name for name in urdf.moving if urdf.joints[name].mimics is None)
+    return tuple(named) or tuple(name for name in leading if name not in passive)
+
+
+def ranges_of_leaders(
+    ranges: Mapping[str, tuple[float, float]],
+    of_followers: Mapping[str, tuple[float, float]],
+    followers: Mapping[str, Following],
+) -> dict[str, tuple[float, float]]:
+    """Ranges of joints that lead, narrowed such that those that follow keep theirs."""
+    narrowed = dict(ranges)
+    for name, how in followers.items():
+        if name in of_followers and how.leader in narrowed:
+            lower, upper = narrowed[how.leader]
+            least, most = how.range_of_leader(*of_followers[name])
+            narrowed[how.leader] = (max(lower, least), min(upper, most))
+    return narrowed
+
+
 def held_position(urdf: Urdf, joint: str, held: Mapping[str, float]) -> float:
     """Where a joint is that no motor moves: as given, 0, or as the held joint that it follows."""
     following = led_by(urdf, joint, held)

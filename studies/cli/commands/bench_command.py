@@ -81,7 +81,7 @@ def bench(given: Given) -> None:
       quietarm bench mine.json --methods nsga2,nsga2+polish --evaluations 2000 --output mine
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
-    from quietarm.metaheuristics.parallel import reach
+    from quietarm.metaheuristics.parallel import reach_scheduler
     from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
     from quietarm.studies.answers.read_answers import load_runs
     from quietarm.studies.bench.bench_page import reported_runs
@@ -125,7 +125,7 @@ def bench(given: Given) -> None:
     )
     workers = given.scheduler or given.workers
     if len(finished) < len(jobs):
-        reach(workers)  # before anything is written
+        reach_scheduler(workers)  # before anything is written
     write_references(problems, given.output)
     trouble = None
     with counting(len(jobs), "jobs") as progress:

@@ -146,7 +146,7 @@ def _with_errors(answer: FoundMotion) -> FoundMotion:
     if motion.task.ranges:
         return answer
     try:
-        words = off_words(off_model(motion.candidate), motion.task.plant.tip_unit)
+        words = off_words(off_model(motion.candidate), motion.task)
     except (ValueError, SolverFailedError) as error:
         words = f"what is left if the frequency is off was not computed: {error}"
     return replace(answer, notes=[words, *answer.notes])

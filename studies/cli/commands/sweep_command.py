@@ -61,7 +61,7 @@ def sweep(given: Given) -> None:
       quietarm sweep flexible-beam --set tip_mass=0,100g,200g --target 60deg \\
           --duration 600ms:1s:20ms --torque-limit 1.5 --output payload.zarr --output payload.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    from quietarm.metaheuristics.parallel import reach
+    from quietarm.metaheuristics.parallel import reach_scheduler
     from quietarm.studies.sweep.definition import Definition, PlanSettings
     from quietarm.studies.sweep.run import run_sweep
     from quietarm.studies.sweep.store import Store
@@ -86,7 +86,7 @@ def sweep(given: Given) -> None:
     definition = Definition(grid, profile, settings, given.front or 0, given.margin)
     workers = given.scheduler or given.workers
     if not datasets[0].exists():
-        reach(workers)  # before anything is written
+        reach_scheduler(workers)  # before anything is written
     store = Store.of(datasets[0], definition)
     missing = len(store.missing(given.part))
     trouble = None

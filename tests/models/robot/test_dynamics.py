@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from robots import UR5_JOINTS, shipped_urdf, urdf_of
+from small_robots import torques_of
 
 import quietarm as qa
 from quietarm.models import Base
@@ -30,7 +31,7 @@ def _both(name, seed, **entries):
     model = pinocchio.buildModelFromUrdf(str(urdf_of(name)))
     model.gravity.linear = np.array(robot.gravity)
     motion = np.random.default_rng(seed).uniform(-2, 2, (3, len(robot.joints)))
-    mine = robot.dynamics.inverse(*np.hstack([motion, np.zeros((3, 2))])).full().ravel()
+    mine = torques_of(robot, *np.hstack([motion, np.zeros((3, 2))]))
     theirs = np.zeros((3, model.nv))
     places = [model.joints[model.getJointId(joint)].idx_v for joint in robot.joints]
     theirs[:, places] = motion
@@ -58,7 +59,7 @@ def test_sliding_joints_are_driven_as_turning_ones(tmp_path):
     model = pinocchio.buildModelFromUrdf(str(file))
     model.gravity.linear = np.array(robot.gravity)
     motion = np.random.default_rng(2).uniform(-1, 1, (3, len(robot.joints)))
-    mine = robot.dynamics.inverse(*np.hstack([motion, np.zeros((3, 2))])).full().ravel()
+    mine = torques_of(robot, *np.hstack([motion, np.zeros((3, 2))]))
     theirs = pinocchio.rnea(model, model.createData(), *motion) + model.damping * motion[1]
     assert list(model.names)[1:] == list(robot.joints)
     assert mine[: len(robot.joints)] == pytest.approx(theirs, rel=1e-9, abs=1e-9)
@@ -68,7 +69,7 @@ def test_mass_matrix_is_pinocchios():
     robot = qa.Robot(urdf=urdf_of("ur5_robot.urdf"), base=STIFF)
     model = pinocchio.buildModelFromUrdf(str(urdf_of("ur5_robot.urdf")))
     q = np.random.default_rng(3).uniform(-3, 3, 6)
-    mine = robot.dynamics.masses(np.append(q, [0.0, 0.0])).full()[:6, :6]
+    mine = robot.dynamics.masses(np.append(q, [0.0, 0.0]))[:6, :6]
     theirs = pinocchio.crba(model, model.createData(), q)
     theirs = np.triu(theirs) + np.triu(theirs, 1).T
     assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-9)
@@ -82,7 +83,7 @@ def test_rotors_and_friction_add_their_torques():
         urdf=urdf_of("ur5_robot.urdf"), base=STIFF, rotor_inertia=rotor, friction=friction
     )
     motion = np.random.default_rng(4).uniform(-1, 1, (3, 8))
-    difference = (more.dynamics.inverse(*motion) - plain.dynamics.inverse(*motion)).full().ravel()
+    difference = torques_of(more, *motion) - torques_of(plain, *motion)
     expected = np.zeros(8)
     expected[UR5_JOINTS.index("elbow_joint")] = 0.3 * motion[2, 2]
     expected[UR5_JOINTS.index("wrist_1_joint")] = 2.0 * motion[1, 3]

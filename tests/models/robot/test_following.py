@@ -3,10 +3,20 @@
 import numpy as np
 import pytest
 from robots import urdf_of
-from two_links import BASE, ELBOW, INERTIAL, SHOULDER, URDF, robot_of, with_elbow, words_of
+from small_robots import torques_of
+from two_links import (
+    BASE,
+    ELBOW,
+    INERTIAL,
+    SHOULDER,
+    URDF,
+    limits_of,
+    robot_of,
+    with_elbow,
+    words_of,
+)
 
 import quietarm as qa
-from quietarm.models.robot.robot_file import limits_of
 from quietarm.ocp.planning.move_table import move_table
 
 MIMIC = with_elbow('<mimic joint="shoulder" multiplier="-2" offset="0.3"/>')
@@ -21,7 +31,7 @@ CHAIN = MIMIC.replace("</robot>", f"{SLIDER}</robot>")
 def _torques(robot, motion):
     """Of the driven joints, the base still."""
     still = np.zeros((3, robot.dynamics.sprung))
-    torques = robot.dynamics.inverse(*np.hstack([motion, still])).full().ravel()
+    torques = torques_of(robot, *np.hstack([motion, still]))
     return torques[: len(robot.joints)]
 
 
@@ -52,7 +62,7 @@ def test_fingers_of_a_gripper_are_pinocchios():
     q = np.random.default_rng(0).uniform(-1, 1, 8)
     theirs = pinocchio.crba(model, model.createData(), q)
     theirs = np.triu(theirs) + np.triu(theirs, 1).T
-    mine = robot.dynamics.masses(np.append(q, [0.0, 0.0])).full()[:8, :8]
+    mine = robot.dynamics.masses(np.append(q, [0.0, 0.0]))[:8, :8]
     assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-9)
 
 
@@ -89,12 +99,12 @@ def test_the_range_of_a_follower_binds_its_leader():
         robot.along(qa.GeometricPath.line([0.0], [1.2]))
 
 
-def test_speeds_of_followers_bind_their_leaders():
+def test_speeds_of_followers_bind_their_leaders(tmp_path):
     """3 rad/s of the elbow are 1.5 rad/s of the shoulder; 1 m/s of the slider would be 5."""
-    limits = limits_of(CHAIN)
+    limits = limits_of(tmp_path, CHAIN)
     assert limits["speed"] == {"shoulder": 1.5}
     assert limits["torque"] == {"shoulder": 50.0}
-    assert limits_of(CHAIN, held={"elbow"})["speed"]["shoulder"] == 3.0
+    assert limits_of(tmp_path, CHAIN, "held: {elbow: 0}")["speed"]["shoulder"] == 3.0
 
 
 def test_a_follower_of_a_held_joint_is_held():
@@ -132,7 +142,7 @@ def test_a_follower_of_a_sprung_joint_swings_with_it():
         urdf=lift, springs={"shoulder": 100.0}, joints=["lift"], gravity=(0.0, 0.0, 0.0)
     )
     assert set(robot.followers) == {"elbow"}
-    inertia = robot.dynamics.masses([0.0, 0.0]).full()[1, 1]
+    inertia = robot.dynamics.masses([0.0, 0.0])[1, 1]
     assert robot.frequencies([0.0])[0] == pytest.approx(np.sqrt(100.0 / inertia))
 
 

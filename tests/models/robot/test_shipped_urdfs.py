@@ -135,7 +135,7 @@ def check_masses(path):
             slopes[entry.idx_v, columns[leader]] = multiplier
     theirs = pinocchio.crba(model, model.createData(), q)
     theirs = slopes.T @ (np.triu(theirs) + np.triu(theirs, 1).T) @ slopes
-    mine = robot.dynamics.masses(np.append(list(at.values()), [0.0, 0.0])).full()
+    mine = robot.dynamics.masses(np.append(list(at.values()), [0.0, 0.0]))
     size = len(free)
     # quietarm takes a rpy of pi/2 to ten digits as pi/2
     accuracy = 1e-9 * np.abs(theirs).max()

@@ -108,7 +108,7 @@ def test_torques_at_rest_hold_the_robot_and_its_bar():
     torques = plant.torques(JointMotion(0.0, 0.0, 0.0), still, still, still)
     assert float(torques[0]) == pytest.approx(0.0, abs=1e-9)
     p = robot.dynamics.sag(START)
-    rest = robot.dynamics.at_rest(np.concatenate([START, p]))[0].full().ravel()[:6]
+    rest = robot.dynamics.at_rest(np.concatenate([START, p]))[0][:6]
     assert [float(torque) for torque in torques] == pytest.approx(rest, rel=1e-9, abs=1e-7)
 
 

@@ -14,13 +14,13 @@ from two_links import (
     LIMIT,
     SHOULDER,
     URDF,
+    limits_of,
     robot_of,
     with_elbow,
     words_of,
 )
 
 import quietarm as qa
-from quietarm.models.robot.robot_file import limits_of
 from quietarm.models.robot.urdf.read_urdf import read_urdf
 from quietarm.models.robot.urdf.urdf_text import dynamics_of, passed_over
 
@@ -126,18 +126,18 @@ def test_a_rotation_by_a_quaternion_is_that_by_roll_pitch_and_yaw():
     assert frames[1] @ [1.0, 0.0, 0.0] == pytest.approx([0.0, 1.0, 0.0], abs=1e-15)
 
 
-def test_limits_of_urdf_1_2_are_kept():
+def test_limits_of_urdf_1_2_are_kept(tmp_path):
     more = 'velocity="3" acceleration="5" deceleration="-4" jerk="60"'
     text = URDF.replace('velocity="3"', more)
-    limits = limits_of(text)
+    limits = limits_of(tmp_path, text)
     assert limits["acceleration"] == {"shoulder": 4.0, "elbow": 4.0}
     assert limits["jerk"] == {"shoulder": 60.0, "elbow": 60.0}
     assert limits["speed"] == {"shoulder": 3.0, "elbow": 3.0}
     words = "limits of deceleration are smaller, and are kept while joints speed up"
     assert words in words_of(robot_of(text, limits=limits))
     larger = URDF.replace('velocity="3"', 'velocity="3" acceleration="5" deceleration="7"')
-    assert limits_of(larger)["acceleration"]["elbow"] == 5.0
-    assert words_of(robot_of(larger, limits=limits_of(larger))) == ""
+    assert limits_of(tmp_path, larger)["acceleration"]["elbow"] == 5.0
+    assert words_of(robot_of(larger, limits=limits_of(tmp_path, larger))) == ""
 
 
 @pytest.mark.parametrize(("moments", "words"), [

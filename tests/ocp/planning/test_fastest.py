@@ -9,10 +9,12 @@ from scipy.linalg import expm
 from scipy.optimize import linprog
 
 from quietarm.models import ArmOnFlexibleLink, FlexibleBeam, LinearAxis, SingleLinkManipulator
+from quietarm.models.dimensions import SECOND, TIP, Words
 from quietarm.ocp import (
     CycloidPolynomial,
     InfeasibleTaskError,
     JointSpline,
+    ModalState,
     Plan,
     PointToPoint,
     Uncertainty,
@@ -20,6 +22,7 @@ from quietarm.ocp import (
     fastest_move,
     plan_move,
 )
+from quietarm.ocp.limits import Quantity, add_quantity, remove_quantity
 from quietarm.ocp.planning.fastest import fastest_residual_limit
 
 LINK = PointToPoint(SingleLinkManipulator(), pi / 6, 0.8, torque_limit=0.15)
@@ -236,3 +239,60 @@ def test_the_default_limit_of_a_robust_plan_is_kept_by_a_spline_where_terms_do_n
     plan = plan_move(task)
     bent = evaluate_coefficients(task.certain, []).motion.peak_deflection
     assert plan.worst.residual <= 0.05 * bent * (1 + 1e-3)  # docs/robustness.md
+
+
+@pytest.fixture
+def tip_speed():
+    """A limit of one's own, of which no motion of a rigid joint tells."""
+    added = add_quantity(
+        Quantity("tip_speed", TIP / SECOND, Words("tip speed"), lambda sample: sample.tip_speeds)
+    )
+    yield added
+    remove_quantity(added.name)
+
+
+@pytest.mark.usefixtures("tip_speed")
+def test_a_limit_that_is_in_no_ones_way_does_not_change_what_an_uncertain_move_may_leave():
+    free = replace(LINK, torque_limit=None, uncertainty=Uncertainty({"frequency": 0.05}))
+    own = replace(free, tip_speed_limit=0.1)
+    expected = fastest_residual_limit(own)
+    assert 0 < expected < fastest_residual_limit(replace(free, torque_limit=0.15))
+    for slack in ({"torque_limit": 1e3}, {"speed_limit": 1e3}):
+        assert fastest_residual_limit(replace(own, **slack)) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.usefixtures("tip_speed")
+def test_a_limit_that_no_duration_keeps_is_named():
+    swinging = ModalState([0.1], [0.0])  # its tip is faster than that before the joint moves
+    task = replace(LINK, torque_limit=None, tip_speed_limit=0.1, initial=swinging)
+    with pytest.raises(
+        InfeasibleTaskError, match=r"breaks its limits \(tip speed 0.1 m/s\) in every"
+    ):
+        fastest_move(task)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("tip_speed")
+def test_a_very_slow_limit_of_ones_own_takes_as_long_as_it_has_to():
+    # where nothing swings the tip's speed is the jerk times a constant, and that span / duration^3
+    durations = [
+        fastest_move(replace(LINK, torque_limit=None, tip_speed_limit=limit)).duration
+        for limit in (1e-3, 1e-6)
+    ]
+    assert durations[1] / durations[0] == pytest.approx(10, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("tip_speed")
+@pytest.mark.parametrize(
+    ("binding", "slack"),
+    [
+        ({"tip_speed_limit": 0.1}, {"torque_limit": 1e3}),
+        ({"tip_speed_limit": 0.1}, {"speed_limit": 1e3}),
+        ({"torque_limit": 0.15}, {"tip_speed_limit": 1e3}),
+    ],
+)
+def test_a_limit_that_is_in_no_ones_way_does_not_change_the_least_time(binding, slack):
+    alone = fastest_move(replace(LINK, **{"torque_limit": None, **binding})).duration
+    both = fastest_move(replace(LINK, **{"torque_limit": None, **binding, **slack})).duration
+    assert both == pytest.approx(alone, rel=1e-4)

@@ -1,0 +1,311 @@
+"""What a robot's parts have to be, and what is made of them where they are not given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quietarm.interrupts import interruptible
+from quietarm.models import dimensions
+from quietarm.models.number_checks import (
+    finite,
+    has_no,
+    not_negative,
+    positive,
+    quoted,
+    whole,
+)
+from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
+from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
+from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
+from quietarm.models.robot.on_path.path_tables import (
+    EXCITED,
+    MOST_MODES,
+)
+from quietarm.models.robot.robot_notes import notes_of_text
+from quietarm.models.robot.text_files import read_text
+from quietarm.models.robot.urdf.following import (
+    driven_joints,
+    mimics_nothing,
+)
+from quietarm.models.robot.urdf.urdf_text import dynamics_of
+
+_MOST_MOVING = 100
+"""Joints, whose equations are written in two seconds."""
+_USUAL_MODES = 2
+"""That are followed where the file does not say how many."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CheckedRobot(MovingRobot):
+    """A robot whose parts fit its URDF: names, values and ranges; defaults are filled in."""
+
+    @interruptible
+    def __post_init__(self) -> None:
+        text = _text_of(self.urdf)
+        self._set("urdf", dynamics_of(text))
+        self._set("remarks", (*notes_of_text(text), *self.remarks))
+        self._set("springs", self._springs("springs", self.springs))
+        self._set("elastic_joints", self._springs("elastic_joints", self.elastic_joints))
+        self._set("held", self._numbers("held", self.held, finite))
+        self._set("joints", self._driven())
+        self._check_names()
+        self._set("rotor_inertia", self._numbers("rotor_inertia", self.rotor_inertia, not_negative))
+        self._set("friction", self._rubbing("friction", "damping"))
+        self._set("coulomb", self._rubbing("coulomb", "friction"))
+        self._set("gravity", _vector("gravity", self.gravity))
+        self._set("positions", self._ranges_given())
+        if self.modes is not None and self.modes != EXCITED:
+            self._set("modes", _number_of_modes(self.modes))
+            if self.beam is not None:
+                self._set("beam", self.beam.for_modes(self.modes))
+        self._set("tip", self._tip())
+        self._check_base()
+        self._check_measured()
+        self._check_inertias()
+        _ = self.dynamics
+        self._check_modes()
+
+    def _check_modes(self) -> None:
+        """As many as there are springs at most; by default two, or one."""
+        sprung = len(self.unscaled.sprung)
+        if not sprung:
+            raise ValueError(
+                "the robot has nothing that bends; give a beam, elastic_joints, springs or a base"
+            )
+        if self.modes is None:
+            self._set("modes", min(_USUAL_MODES, sprung))
+        elif self.modes != EXCITED and self.modes > sprung:
+            springs = "1 spring" if sprung == 1 else f"{sprung} springs"
+            raise ValueError(f"modes is {self.modes}; the robot has {springs}, give at most that")
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _springs(self, entry: str, springs: Mapping[str, Any]) -> dict[str, Spring]:
+        found = dict[str, Spring]()
+        for name, spring in springs.items():
+            self._check_joint(entry, name)
+            values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
+            what = f"of {name} in {entry}"
+            stiffness, damping = (
+                unit.of(self.kind_of(name)) for unit in (dimensions.STIFFNESS, dimensions.DAMPING)
+            )
+            found[name] = Spring(
+                positive(f"stiffness {what}", values.stiffness, stiffness),
+                not_negative(f"damping {what}", values.damping, damping),
+            )
+        return found
+
+    def _numbers(self, entry: str, values: Mapping[str, Any], check: Any) -> dict[str, float]:
+        for name in values:
+            self._check_joint(entry, name)
+        return {name: check(f"{entry} of {name}", value) for name, value in values.items()}
+
+    def _rubbing(self, entry: str, of_urdf: str) -> dict[str, float]:
+        """Friction as given, and the URDF's of all other joints that motors move."""
+        given = self._numbers(entry, getattr(self, entry), not_negative)
+        sizes = {
+            name: getattr(self.description.joints[name], of_urdf)
+            for name in self._moved_by_motors()
+        }
+        return {name: size for name, size in sizes.items() if size > 0} | given
+
+    def _moved_by_motors(self) -> list[str]:
+        """The driven joints, and those that follow them."""
+        followers = [name for name, led in self.followers.items() if led.leader in self.joints]
+        return [*self.joints, *followers]
+
+    def _ranges_given(self) -> dict[str, tuple[float, float]]:
+        """Ranges of driven joints within the URDF's; ValueError where one is none."""
+        ranges = dict[str, tuple[float, float]]()
+        for name, ends in self.positions.items():
+            if name not in self.joints:
+                raise ValueError(
+                    has_no("the robot", "driven joint, for positions,", name, self.joints)
+                )
+            joint = self.description.joints[name]
+            try:
+                lower, upper = (float(end) for end in ends)
+            except (TypeError, ValueError):
+                raise ValueError(
+                    f"positions of {name} are {quoted(ends)}; give the least and the largest"
+                ) from None
+            if not joint.lower <= lower < upper <= joint.upper:
+                raise ValueError(
+                    f"positions of {name} are {lower:g} to {upper:g}; give a range within the "
+                    f"URDF's, {joint.lower:g} to {joint.upper:g}"
+                )
+            ranges[name] = (lower, upper)
+        return ranges
+
+    def _check_joint(self, entry: str, name: str) -> None:
+        if name not in self.description.moving:
+            raise ValueError(
+                has_no("the URDF", f"moving joint, for {entry},", name, self.description.moving)
+            )
+
+    def _driven(self) -> tuple[str, ...]:
+        """The driven joints; those that mimic others follow them."""
+        joints = self.description.joints
+        names = driven_joints(self.description, self.joints, {*self.springs, *self.held})
+        for name in (*names, *self.springs):
+            self._check_joint("joints", name)
+            mimic = joints[name].mimics
+            if mimic is not None:
+                entry = "joints" if name in names else "springs"
+                raise ValueError(
+                    f"joint {quoted(name)} of the URDF mimics {quoted(mimic.joint)} and follows "
+                    f"it; leave it out of {entry}, or <mimic> out of the URDF"
+                )
+        if not names:
+            raise ValueError("no joint of the robot is driven; name those that are, as joints")
+        if len(names) + len(self.springs) > _MOST_MOVING:
+            raise ValueError(
+                f"the robot has {len(names) + len(self.springs)} joints that move; give at most "
+                f"{_MOST_MOVING}, others as fixed ones or in held"
+            )
+        return names
+
+    def _check_names(self) -> None:
+        driven = self.joints
+        for name in {name for name in driven if driven.count(name) > 1}:
+            raise ValueError(f"joint {quoted(name)} is driven twice; name it once in joints")
+        for entry, names in (("held", self.held), ("springs", self.springs)):
+            for name in names:
+                if name in driven:
+                    raise ValueError(
+                        f"joint {quoted(name)} is driven and in {entry}; leave one of them out"
+                    )
+        for name in self.springs:
+            if name in self.held:
+                raise ValueError(
+                    f"joint {quoted(name)} is held and in springs; leave one of them out"
+                )
+        for entry in ("elastic_joints", "rotor_inertia", "friction", "coulomb"):
+            for name in getattr(self, entry):
+                if name in self._moved_by_motors():
+                    continue
+                if why := mimics_nothing(self.description, name):
+                    raise ValueError(
+                        f"joint {quoted(name)}, which has an entry in {entry}, {why}, which the "
+                        "URDF does not have; mend its mimic element"
+                    )
+                raise ValueError(has_no("the robot", f"driven joint, for {entry},", name, driven))
+        if self.beam is not None and self.beam.at not in self.description.links:
+            raise ValueError(
+                has_no("the URDF", "link, for the beam,", self.beam.at, self.description.links)
+            )
+
+    def _tip(self) -> str:
+        links = self.description.links
+        if self.tip is None:
+            return BEAM_END if self.beam is not None else list(links)[-1]
+        if self.tip != BEAM_END and self.tip not in links:
+            raise ValueError(has_no("the URDF", "link, for the tip,", self.tip, links))
+        if self.tip == BEAM_END and self.beam is None:
+            raise ValueError(f"tip is {BEAM_END!r}, and there is no beam; name a link")
+        return self.tip
+
+    def _check_base(self) -> None:
+        if self.base is None:
+            return
+        stiffness = tuple(
+            positive("stiffness of the base", x, "N m/rad")
+            for x in _pair_of("stiffness", self.base.stiffness)
+        )
+        damping = tuple(
+            not_negative("damping of the base", x, "N m s/rad")
+            for x in _pair_of("damping", self.base.damping)
+        )
+        height = not_negative("height of the base", self.base.height, "m")
+        self._set("base", Base((stiffness[0], stiffness[1]), (damping[0], damping[1]), height))
+
+    def _check_measured(self) -> None:
+        if self.measured is None:
+            return
+        frequency = positive("measured frequency", self.measured.frequency, "rad/s")
+        at = tuple(finite("a position of measured", x, "rad") for x in self.measured.at)
+        if len(at) != len(self.joints):
+            raise ValueError(
+                f"measured has {len(at)} positions and the robot {len(self.joints)} joints; give "
+                "one of each"
+            )
+        self._set("measured", Measured(frequency, at))
+
+    def _check_inertias(self) -> None:
+        """Every driven joint and every spring moves a mass."""
+        mechanism = self.unscaled
+        links = self.description.links
+        for name, (number, _) in mechanism.links.items():
+            faulty = name in links and links[name].turns_backwards
+            if faulty and number != GROUND and mechanism.bodies[number].inertia.turns_backwards:
+                raise ValueError(
+                    f"link {quoted(name)} of the URDF has {links[name].fault}; give what a body "
+                    "can have"
+                )
+        dynamics = Dynamics(mechanism)
+        x = np.random.default_rng(0).uniform(0.3, 1.0, dynamics.size)
+        masses = dynamics.masses(x)
+        names = [*self.joints, *mechanism.spring_names]
+        scale = max(1e-12, float(np.abs(masses).max()))
+        for name, inertia in zip(names, np.diag(masses)):
+            if inertia <= 1e-12 * scale:
+                raise ValueError(
+                    f"joint {quoted(name)} moves no mass; give the links beyond it an <inertial> "
+                    "in the URDF"
+                )
+
+
+def _text_of(urdf: object) -> str:
+    """The text of a URDF that is given, or of its file."""
+    text = read_text(urdf, "URDF") if isinstance(urdf, Path) else urdf
+    if not isinstance(text, str):
+        raise TypeError(f"urdf is {quoted(text)}; give the text of a URDF, or a file as a Path")
+    if "<" not in text:
+        raise ValueError(
+            "urdf is no text of a URDF, which begins with <robot>; give that, or its file as a "
+            "pathlib.Path"
+        )
+    return text
+
+
+def _number_of_modes(modes: object) -> int:
+    if isinstance(modes, str):
+        raise ValueError(
+            f"modes is {quoted(modes)}; give a whole number, or {EXCITED} for those that the path "
+            "excites"
+        )
+    return whole("modes", modes, 1, MOST_MODES)
+
+
+def _vector(name: str, value: Any) -> tuple[float, float, float]:
+    entries = [finite(name, entry, "m/s^2") for entry in value]
+    if len(entries) != 3:
+        raise ValueError(f"{name} has {len(entries)} numbers; give three, as 0, 0, -9.81")
+    return (entries[0], entries[1], entries[2])
+
+
+def _pair_of(name: str, value: Any) -> tuple[Any, Any]:
+    entries = (value, value) if isinstance(value, int | float) else tuple(value)
+    if len(entries) != 2:
+        raise ValueError(
+            f"{name} of the base has {len(entries)} numbers; give one, or two, about x and about y"
+        )
+    return entries
+
+
+def _two_of(spring: Any) -> tuple[Any, ...]:
+    """Stiffness and damping of a number, a pair or a mapping."""
+    if isinstance(spring, Mapping):
+        names = [entry.name for entry in fields(Spring)]
+        for name in spring:
+            if name not in names:
+                raise ValueError(has_no("a spring", "entry", name, names))
+        return tuple(spring.get(name, 0.0) for name in names)
+    return (spring,) if isinstance(spring, int | float) else tuple(spring)
