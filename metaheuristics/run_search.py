@@ -311,7 +311,7 @@ def _of_preset(
         most,
         f"{most} take 1.6 GB of memory",
     )
-    stated = {"population": size, **preset.checked(size, settings)}
+    stated = {"population": size, **preset.stated(preset.checked(size, settings))}
     if evaluations is not None:
         preset.refuse_less_than_one(evaluations, size, objectives)
     return preset.build(size, settings, objectives), stated

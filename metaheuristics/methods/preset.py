@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 from quietarm.metaheuristics.methods.search_method import SearchMethod
 from quietarm.metaheuristics.methods.settings import MethodSetting, Value, with_defaults
 from quietarm.ocp.checks import install
+from quietarm.ocp.solvers.choice import SOLVERS
+from quietarm.ocp.solvers.sqp import Sqp
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -99,7 +101,26 @@ class Preset:
                 MethodSetting(name, name, value, "of one's own", self.own.check)
                 for name, value in self.defaults.items()
             )
-        return tuple(MethodSetting.of(argument, value) for argument, value in self.defaults.items())
+        settings = [MethodSetting.of(argument, value) for argument, value in self.defaults.items()]
+        if self.takes_gradients:  # how many iterations it has is a setting of the method
+            options = SOLVERS[Sqp.name].stated_options()
+            own = [entry for entry in options if entry.name != "iterations"]
+            settings += map(MethodSetting.of_solver, own)
+        return tuple(settings)
+
+    @property
+    def setting_names(self) -> set[str]:
+        """The names of these settings."""
+        return {setting.name for setting in self.settings}
+
+    def stated(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """What a record says of checked settings: an option of a solver only if it was changed."""
+        usual = {setting.name: setting.default for setting in self.settings if setting.is_of_solver}
+        return {
+            name: value
+            for name, value in values.items()
+            if name not in usual or value != usual[name]
+        }
 
     def build(
         self,

@@ -8,6 +8,7 @@ from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
+from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -41,6 +42,10 @@ from quietarm.views.report.front_rows import failure_lines, gradient_lines, poli
 _METHODS = {"epsilon": partial(epsilon_front, at=LEVELS), "weighted": weighted_front}
 _SEARCHES = {
     name: f"{name} is a metaheuristic; give quietarm search --method {name}" for name in PRESETS
+} | {
+    f"{name}:{solver}": f"{name}:{solver} names its solver; give --method {name} --solver {solver}"
+    for name in _METHODS
+    for solver in SOLVERS
 }
 
 
