@@ -29,10 +29,13 @@ from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Record, Verification, number_of_starts
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
+from quietarm.ocp.solvers.choice import as_part
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
+FIRST_PLAN = "first_plan"
+"""What a record calls the solver of the plan that is one of the starts."""
 FIRST_INTERVALS = 80
 MOST_FIRST_INTERVALS = 1500
 MOST_INTERVALS = 6000
@@ -215,6 +218,7 @@ def energy_floor(
     levels = [_cheapest(solved), _cheapest(improved)]
     _refine(program, levels, tolerance)
     solution, candidate = _certify_least(program, levels)
+    first_plan = as_part(FIRST_PLAN, solver.stated) if starts > 1 else {}
     method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
     floor = Floor(
         task=task,
@@ -224,15 +228,14 @@ def energy_floor(
         status=solution.status,
         solver_energy=solution.energy,
         tolerance=tolerance,
-        record=_record(method, starts, seed, solver, time.perf_counter() - began),
+        record=Record(
+            method,
+            {"starts": starts, **program.solver.stated, **first_plan},
+            seed=seed,
+            seconds=time.perf_counter() - began,
+        ),
     )
     return floor.with_candidate(candidate)
-
-
-def _record(method: str, starts: int, seed: int, solver: Solver, seconds: float) -> Record:
-    """What found a floor; of its solver what is not the default."""
-    options = {} if solver.stated == Sqp().stated else solver.stated
-    return Record(method, {"starts": starts, **options}, None, seed, seconds=seconds)
 
 
 def _cheapest(solutions: Iterable[FreeSolution]) -> FreeSolution:

@@ -143,7 +143,8 @@ class FloorProgram:
         self.task = task
         self.smooth = smooth
         self._limits = task.limits
-        self._ipopt = solver.as_kind(Ipopt)
+        self.solver = solver.as_kind(Ipopt)
+        """What solves it, with the options of the solver that was given."""
         self._states = 2 + smooth + 2 * task.plant.modes
         joints = len(task.plant.joint_names)
         self._parts = NODES * joints if task.energy.absolute else 0
@@ -220,9 +221,9 @@ class FloorProgram:
         options = _WARM if warm else COLD
         return {
             **options,
-            **self._ipopt.own_options,
-            "tol": self.larger_tolerance * self._ipopt.tolerance,
-            "max_iter": min(options["max_iter"], self._ipopt.iterations),
+            **self.solver.own_options,
+            "tol": self.larger_tolerance * self.solver.tolerance,
+            "max_iter": min(options["max_iter"], self.solver.iterations),
         }
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:

@@ -18,7 +18,7 @@ sides of its limit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
 
@@ -98,7 +98,8 @@ class Ipopt(Solver):
         """Solve each problem from its start; see `Solver.solve`. Groups are not used."""
         del groups
         pairs = zip(problems, starts)
-        return [_Numbers(problem, warm, self).solve(start) for problem, start in pairs]
+        solutions = [_Numbers(problem, warm, self).solve(start) for problem, start in pairs]
+        return [replace(solution, solved_by=self.stated) for solution in solutions]
 
 
 class _Program(NamedTuple):

@@ -15,6 +15,7 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import Setting
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, Values
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.batch import Batch, Derivatives, batch_of
@@ -273,6 +274,9 @@ class Solution:
         residual, too, where rest on arrival is asked for.
     reason : str
         How it ended, in the solver's own words.
+    solved_by : mapping of str to str, bool, int, float or None
+        The solver that found it, with its options, as a record states them. It stays when the
+        solution is corrected for what its steps miss.
     """
 
     coefficients: NDArray[np.float64]
@@ -283,6 +287,7 @@ class Solution:
     arrival: NDArray[np.float64]
     shadow_prices: Mapping[str, float] = field(default_factory=dict)
     reason: str = ""
+    solved_by: Mapping[str, Setting] = field(default_factory=dict)
 
     @property
     def residual(self) -> float:

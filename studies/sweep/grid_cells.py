@@ -22,7 +22,15 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness import sensitivities_of_moves
-from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
+from quietarm.ocp.solvers.solver import NAME
+from quietarm.studies.sweep.definition import (
+    COEFFICIENTS,
+    SOLVED_BY,
+    STATES,
+    STATUS,
+    Definition,
+    number_of_solver,
+)
 from quietarm.studies.sweep.move_grid import by_plant
 
 Cells = Iterator[dict[str, Any]]
@@ -119,12 +127,13 @@ def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], cold: b
         solver=settings.solver,
     )
     for k, status in enumerate(moves.status):
-        row: dict[str, Any] = {STATUS: STATES.index(status.value)}
+        row: dict[str, Any] = {STATUS: STATES.index(status.value), SOLVED_BY: number_of_solver("")}
         if np.isfinite(moves.energy[k]):
             for name in ("energy", "residual", "iterations", COEFFICIENTS):
                 row[name] = getattr(moves, name)[k]
             row |= {f"peak_{name}": values[k] for name, values in moves.peaks.items()}
             row |= {f"price_{name}": price for name, price in moves.shadow_prices[k].items()}
+            row[SOLVED_BY] = number_of_solver(str(moves.solved_by[k].get(NAME)))
         yield row
 
 
@@ -146,7 +155,7 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
         except QuietarmError as error:
             infeasible = isinstance(error, InfeasibleTaskError)
             status = SolveStatus.INFEASIBLE if infeasible else SolveStatus.ITERATION_LIMIT
-            yield {STATUS: STATES.index(status.value)}
+            yield {STATUS: STATES.index(status.value), SOLVED_BY: number_of_solver("")}
             continue
         guess = plan.coefficients
         peaks = {quantity.peak: plan.motion.peak(name) for name, quantity in QUANTITIES.items()}
@@ -155,6 +164,7 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
             COEFFICIENTS: guess,
             "energy": plan.energy,
             "residual": plan.residual,
+            SOLVED_BY: number_of_solver(plan.record.method),
             **peaks,
         }
 
