@@ -1,4 +1,4 @@
-"""Whether a plant can exist, by its equations linearised with the joint at rest.
+"""Check that a plant can exist, by its equations linearised with the joint at rest.
 
 Torque over joint speed is an impedance Z(s). No work is gained where it is positive real (Brune, J.
 Math. and Phys. 10, 1931): where its real part is not negative for any s whose own is positive.

@@ -76,7 +76,7 @@ class Unit:
 
     @property
     def is_tip_way(self) -> bool:
-        """Whether it is that of the tip's way, which is shown in millimetres."""
+        """Return whether this is the unit of a tip's displacement, shown in millimetres."""
         return self.powers == TIP.powers
 
     def __mul__(self, other: Unit) -> Unit:

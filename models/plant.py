@@ -255,7 +255,7 @@ class Plant(ABC):
 
     @property
     def _tips_follow_the_modes(self) -> bool:
-        """Whether the tips' displacements are the same everywhere on the path."""
+        """Return whether the tips' displacements are the same everywhere on the path."""
         return type(self).tips_at is Plant.tips_at
 
     @property
@@ -269,7 +269,7 @@ class Plant(ABC):
     @property
     @final
     def has_path(self) -> bool:
-        """Whether what its equations take as the joint's angle is a place on a path."""
+        """Return whether the joint's angle in the equations is a place on a path."""
         return self.along_path or len(self.joint_names) > 1
 
     @property
@@ -287,7 +287,7 @@ class Plant(ABC):
 
     @property
     def tip_names(self) -> tuple[str, ...]:
-        """What displacements of the tips are called in tables: tip_1, tip_2; of one tip, tip."""
+        """Names of the tips' displacements in tables: tip_1 and tip_2, or tip if there is one."""
         numbers = range(1, self.tips + 1)
         return ("tip",) if self.tips == 1 else tuple(f"tip_{number}" for number in numbers)
 
@@ -309,7 +309,7 @@ class Plant(ABC):
 
     @property
     def label(self) -> str:
-        """What reports call it, by default its name."""
+        """Name of the plant in reports; by default its `name`."""
         return self.name
 
     @property
@@ -387,7 +387,7 @@ class Plant(ABC):
     @property
     @final
     def tips(self) -> int:
-        """How many tip displacements the plant has."""
+        """Number of tip displacements of the plant."""
         return len(self.tips_at(JointMotion(ca.SX.sym("angle"), 0.0, 0.0), [0.0] * self.modes))
 
     @final

@@ -136,7 +136,7 @@ def _angles_of(plant: Plant) -> Array:
 
 
 def _gives(plant: Plant, method: str) -> bool:
-    """Whether the plant has a method of its own in place of the contract's."""
+    """Return whether the plant has a method of its own in place of the contract's."""
     contract = next(kind for kind in reversed(type(plant).__mro__) if "joints" in vars(kind))
     return getattr(type(plant), method) is not getattr(contract, method)
 
@@ -218,7 +218,7 @@ def _tips(plant: Plant, path: JointMotion, W: list[Expression]) -> list[Expressi
 
 
 def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
-    """What a method returns, as a list."""
+    """Call a method of the plant and return its result as a list."""
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings(
@@ -244,7 +244,7 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
 
 
 def _first_line(error: BaseException) -> str:
-    """What went wrong in a method, of casadi's many lines the first."""
+    """Say what went wrong in a method, by the first of casadi's many lines."""
     if isinstance(error, SystemExit):
         return words_of_error(error)
     text = str(error).strip().partition("\n")[0]
@@ -252,7 +252,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError:
-    """What a method does, and what to do about it."""
+    """Make the error about what a method does, with a remedy."""
     write = f"write def {method}{_WRITE[method]} for modes = {plant.modes}"
     symbols = (
         "with casadi.cos, casadi.if_else and so on, as math, numpy, if and max take no symbols"

@@ -224,7 +224,7 @@ class Robot(MovingRobot):
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
-        """What its files leave open, have wrong or have passed over, in one line each."""
+        """Notes on the robot, one line each, about gaps, errors and unused entries of its files."""
         return (*self.remarks, *notes_of(self))
 
     def ranges(self) -> list[tuple[float, float]]:
@@ -518,7 +518,7 @@ class RobotOnPath(Plant):
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What the robot's files leave open or have wrong."""
+        """Notes on the robot, one line each, about gaps, errors and unused entries of its files."""
         return self.robot.notes
 
     @property

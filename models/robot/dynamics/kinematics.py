@@ -51,7 +51,7 @@ class Kinematics:
         return Pose(rotation, origin.ravel())
 
     def offset(self, q: Array, pose: Pose) -> tuple[Array, Array]:
-        """How far the link is from a pose [m, rad], six numbers, and their slopes by q."""
+        """Return how far the link is from a pose, six numbers [m, rad], and slopes by q."""
         offset, slopes = self._offset(q, pose.rotation, pose.origin)
         return offset.full().ravel(), slopes.full()
 

@@ -87,7 +87,7 @@ class Mechanism:
         return [self.bodies[number].joint for number in self.sprung]
 
     def stiffened(self, factor: float) -> Mechanism:
-        """The same with so many times its stiffness, its damping ratios kept."""
+        """Return the mechanism with a multiple of its stiffness and the same damping ratios."""
         return replace(
             self,
             stiffness=factor * self.stiffness,
@@ -95,7 +95,7 @@ class Mechanism:
         )
 
     def loaded(self, mass: float) -> Mechanism:
-        """The same with another mass at the end of the beam [kg]; a negative one takes it away."""
+        """Return the mechanism with a mass [kg] added at the end of the beam, or taken away."""
         number, frame = self.links[BEAM_END]
         body = self.bodies[number]
         point = Inertia(mass).seen_from(frame)
@@ -229,7 +229,7 @@ def _joined(
 
 
 def _moved(joint: UrdfJoint, position: float) -> Frame:
-    """What a joint does that is held at a position [rad or m]."""
+    """Return the frame to which a joint moves what it carries, at a position [rad or m]."""
     if joint.kind == PRISMATIC:
         return Frame(origin=position * joint.axis)
     return Frame(rotation_about(joint.axis, position))

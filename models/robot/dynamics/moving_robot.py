@@ -81,7 +81,7 @@ class MovingRobot(RobotParts):
 
     @interruptible
     def sag(self, q: Sequence[float] | Array) -> Array:
-        """How far the tip hangs below the robot that does not bend [m], in the tip's frame."""
+        """Return how far the tip hangs below that of a rigid robot [m], in the tip's frame."""
         dynamics = self.dynamics
         q = np.asarray(q, float)
         p = sag_at(dynamics, q)

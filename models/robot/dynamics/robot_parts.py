@@ -1,4 +1,4 @@
-"""What a robot is made of: its URDF, which joints are driven, what bends."""
+"""The parts of a robot: its URDF, the joints that are driven, and what bends."""
 
 from __future__ import annotations
 

@@ -142,7 +142,7 @@ class Beam:
 
     @property
     def count(self) -> int:
-        """How many parts."""
+        """Number of parts of the beam."""
         assert self.pieces is not None
         return self.pieces
 

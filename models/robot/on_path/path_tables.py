@@ -103,7 +103,7 @@ class Tables:
 
     @property
     def size(self) -> int:
-        """How many numbers they hold."""
+        """Number of values that the tables hold."""
         groups = [*self.modes.values(), *self.torques.values(), self.tips]
         return sum(int(np.count_nonzero(table)) for table in groups)
 
@@ -212,7 +212,7 @@ Groups = dict[str, dict[str, Array]]
 def variations_of(
     robot: MovingRobot, path: GeometricPath, names: tuple[str, ...]
 ) -> dict[tuple[int, ...], Groups]:
-    """What is added to the tables where multiples of `VARIED` are not 1.
+    """Return what is added to the tables if multiples of `VARIED` are not 1.
 
     Parameters
     ----------
@@ -340,7 +340,7 @@ class _Layout:
         return found
 
     def scales(self, rows: Array) -> Array:
-        """What each column is compared with: the largest value of its term, or what matters.
+        """Return the size to which each column is compared: its term's largest, or what matters.
 
         The path forces the modes by an acceleration; they answer with amplitudes of that over the
         square of the lowest frequency, which tells what else of their equations and of the torques

@@ -28,7 +28,7 @@ _PLACES = 11
 
 @lru_cache(maxsize=8)
 def stick_figure_of(robot: MovingRobot, path: GeometricPath) -> StickFigure:
-    """Of a robot on a path, computed once."""
+    """Return the stick figure of a robot on a path, which is computed once."""
     return StickFigure(robot, path)
 
 
@@ -86,7 +86,7 @@ class StickFigure:
         return 1 + self._bodies[number].parent
 
     def _first_of_beam(self, chain: list[int]) -> int:
-        """How many rows of the chain stand before what is drawn as bent: the beam, or the end."""
+        """Return how many rows of the chain stand before the beam, or all if there is no beam."""
         if not self._has_beam:
             return len(chain)
         return sum(not self._bodies[row - 1].of_beam for row in chain)

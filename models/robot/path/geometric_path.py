@@ -267,7 +267,7 @@ class GeometricPath:
 
     @property
     def count(self) -> int:
-        """How many joints."""
+        """Number of joints."""
         return len(self.coefficients[0])
 
     @cached_property
@@ -496,7 +496,7 @@ _BESIDE_POSITIONS = {
 
 
 def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
-    """Whatever has joint_names and points in a message, however deep."""
+    """Find the parts of a message that have joint_names and points, however deep."""
     if isinstance(document, Mapping):
         if "points" in document and "joint_names" in document:
             yield document
@@ -508,7 +508,7 @@ def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
 
 
 def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
-    """Whether it is a MultiDOFJointTrajectory, of whole poses."""
+    """Return whether a trajectory is a MultiDOFJointTrajectory, which holds whole poses."""
     points = trajectory["points"]
     first = points[0] if isinstance(points, list) and points else None
     return isinstance(first, Mapping) and "transforms" in first

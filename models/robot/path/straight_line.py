@@ -126,7 +126,7 @@ def _newton(kinematics: Kinematics, begin: Array, pose: Pose) -> Array | None:
 
 
 def _reaches(kinematics: Kinematics, begin: Array, place: Array) -> bool:
-    """Whether the link comes to a place from positions nearby, however it turns."""
+    """Return whether the link comes to a place from positions nearby, however it turns."""
     q = begin
     for _ in range(_MOST_NEWTON):
         offset, slopes = kinematics.offset(q, Pose(np.eye(3), place))

@@ -96,7 +96,7 @@ def bounds_of_leaders(
 
 
 def mimics_nothing(urdf: Urdf, joint: str) -> str:
-    """What a joint mimics that the URDF does not have, and the joint that is meant; or nothing."""
+    """Say which missing joint a joint mimics and which may be meant; empty if none."""
     mimic = urdf.joints[joint].mimics if joint in urdf.joints else None
     if mimic is None or mimic.joint in urdf.joints:
         return ""
