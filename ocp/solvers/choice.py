@@ -16,7 +16,7 @@ SOLVERS: Mapping[str, type[Solver]] = {Sqp.name: Sqp, Ipopt.name: Ipopt}
 
 
 def stand_in(solver: Solver) -> Solver | None:
-    """What is tried where a solver fails, with its options: IPOPT; None where IPOPT failed."""
+    """Return IPOPT with a solver's options, to try where it fails; None if it is IPOPT."""
     return None if isinstance(solver, Ipopt) else solver.as_kind(Ipopt)
 
 

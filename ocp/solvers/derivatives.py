@@ -316,7 +316,7 @@ class _Differentiated:
         return list(factors), list(turned)
 
     def path_hessian(self, of_outputs: list[ca.MX], of_forcing: list[ca.MX]) -> list[ca.MX]:
-        """What the path's own second derivatives add to the Hessian."""
+        """Terms of the Hessian from the path's own second derivatives."""
         if self.path.linear:
             return []
         count = self.path.count
@@ -361,7 +361,7 @@ class _Differentiated:
         return self.function("derivatives", self.inputs, blocks)
 
     def compile_arrivals(self) -> ca.Function:
-        """What there is without outputs as a function."""
+        """Compile the function of arrivals and their derivatives, without outputs."""
         of_forcing = self.forcing_multipliers([])
         blocks = [
             [self.arrival],

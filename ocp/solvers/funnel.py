@@ -72,7 +72,7 @@ class RowPrograms(Protocol):
 
 
 class End(Enum):
-    """How a row ended."""
+    """The ways in which a row can end."""
 
     SOLVED = "a local optimum"
     CREEPING = "feasible, and hardly better for many iterations"
@@ -83,7 +83,7 @@ class End(Enum):
 
 
 class Course(NamedTuple):
-    """How rows are led to their minima.
+    """Settings by which rows are led to their minima.
 
     By the options of a solver: a row is solved where the model promises less than its tolerance, as
     a share of f; it has at most so many iterations, and with a log each is a line. The objective is
@@ -312,7 +312,7 @@ class _Descent:
         promised: Array,
         trial: Model,
     ) -> Flags:
-        """Whether the rows at these places of the model accept their steps d."""
+        """Return which rows at these places of the model accept their steps d."""
         rows = self.going[places]
         model = self.model.take(places)
         before = self.violation[rows]

@@ -79,7 +79,7 @@ class Ipopt(Solver):
 
     @property
     def own_options(self) -> dict[str, str | int | float]:
-        """What IPOPT is told of these options, by its own names."""
+        """These options by IPOPT's own names."""
         return {
             "tol": self.tolerance,
             "max_iter": self.iterations,
@@ -115,7 +115,7 @@ class _Program(NamedTuple):
 
 
 class _Form(NamedTuple):
-    """What two problems of one task along one profile have in common if one program serves both.
+    """The properties of a task along a profile by which one program serves several problems.
 
     Rows of tip displacements are those of each scenario.
     """
@@ -320,7 +320,7 @@ class _Numbers:
         return lower, upper
 
     def prices(self, multipliers: Array) -> dict[str, float]:
-        """What the least energy falls by if a limit is widened [J by its unit]."""
+        """Return the fall of the least energy per unit of each widened limit [J by its unit]."""
         counts = self.program.counts
         problem = self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])

@@ -1,4 +1,4 @@
-"""What a solver is given, a task on its steps with what is minimised and limited; what it gives."""
+"""The program that a solver is given, a task on its steps, and its solution."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ the plain cycloid's residual, whichever is larger."""
 
 
 def still_of(task: PointToPoint) -> float:
-    """What counts as rest on arrival [m]: `STILL`, and less for a small move."""
+    """Return the residual [m] that counts as rest on arrival: `STILL`, or less for a small move."""
     return STILL * task.smallness
 
 
@@ -94,7 +94,7 @@ class Program:
         return cls(task, profile, steps or first_steps(task, profile))
 
     def asking(self, **changes: Any) -> Self:
-        """The same task on the same steps, with other limits, bound, objective or offset."""
+        """Return this program with other limits, bound, objective or offset, on the same steps."""
         return replace(self, **changes)
 
     def within(
@@ -108,7 +108,7 @@ class Program:
         return self.asking(limits=limits, bound=bound, minimise=minimise, offset=0.0)
 
     def on_steps_of(self, other: Program) -> Self:
-        """What this program asks for, of another's task on its steps."""
+        """Return this program's question about the task of another program, on that one's steps."""
         return replace(
             self,
             task=other.task,
@@ -181,7 +181,7 @@ class Program:
         return evaluate([self], coefficients[None])[0]
 
     def measure(self, values: Values, offset: Array | float = 0.0) -> Evaluation:
-        """What one candidate's values in all scenarios mean, with this added to its arrivals."""
+        """Evaluate a candidate's values in all scenarios, with an offset added to arrivals."""
         return self.evaluator.of_values(values, offset)
 
     @property
@@ -203,12 +203,12 @@ class Program:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the state on arrival has to be the wanted one."""
+        """Return whether the state on arrival has to be the wanted one."""
         return self.residual_limit == 0 and self.peak != RESIDUAL
 
     @property
     def bounds_residual(self) -> bool:
-        """Whether the residual stands in an inequality."""
+        """Return whether the residual stands in an inequality."""
         return self.peak == RESIDUAL or (np.isfinite(self.residual_limit) and not self.at_rest)
 
 
@@ -253,7 +253,7 @@ def programs_of(tasks: Sequence[PointToPoint], profile: JointProfile, steps: int
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver gives for one start, in SI units and by its own steps.
+    """The solution that a solver finds from one start, in SI units and by its own steps.
 
     Attributes
     ----------
@@ -307,7 +307,7 @@ def shadow_prices(
     of_arrival: NDArray[np.float64],
     tips: NDArray[np.float64],
 ) -> dict[str, float]:
-    """What the least energy falls by if a limit is widened [J by its unit], from multipliers.
+    """Return the decrease of the least energy per unit of each widened limit [J by its unit].
 
     Those of what is bounded, by name, and of the arrival are of SI units, and of an objective with
     the factor `of_energy` of the energy [1/J]. The tips are rows as of `price_of_rest`.

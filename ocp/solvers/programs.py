@@ -33,7 +33,7 @@ class _Constraint(ABC):
 
     @property
     def count(self) -> int:
-        """How many values."""
+        """Number of values of the quantity."""
         return self.upper.shape[1]
 
     @abstractmethod

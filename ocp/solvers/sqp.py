@@ -114,7 +114,7 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Program]) -> 
 def _shadow_prices(
     programs: Programs, ended: Ended, problems: Sequence[Program]
 ) -> list[dict[str, float]]:
-    """What each least energy falls by if a limit is widened [J by its unit]."""
+    """Return the decrease of each least energy per unit of each widened limit [J by its unit]."""
     multipliers = programs.split(ended.multipliers.bounded)
     prices = list[dict[str, float]]()
     for i, problem in enumerate(problems):
