@@ -51,7 +51,7 @@ class Mesh:
 
     @property
     def lengths(self) -> NDArray[np.float64]:
-        """How long the steps are, shape (steps,)."""
+        """Lengths of the steps, shape (steps,)."""
         return np.diff(self.boundaries)
 
     @property

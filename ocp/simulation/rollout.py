@@ -81,7 +81,7 @@ class SymbolicRollout:
 
 
 class Simulation(NamedTuple):
-    """What simulations of many candidates have in common.
+    """The common part of simulations of many candidates.
 
     Errors are what may differ from the plant in a candidate, as by `perturb_plant`; breaks are the
     fractions of the move at which the motion is not smooth.
@@ -107,7 +107,7 @@ class Simulation(NamedTuple):
         errors: Sequence[Expression],
         candidates: int = 1,
     ) -> SymbolicRollout:
-        """As of `symbolic_rollout`, of the `row` of a task and relative errors of its plant."""
+        """Simulate in symbols, for the `row` of a task and relative errors of its plant."""
         return symbolic_rollout(
             perturb_plant(self.plant, dict(zip(self.errors, errors))),
             self.profile,
