@@ -62,11 +62,11 @@ class JointProfile(ABC):
     @property
     @abstractmethod
     def size(self) -> int:
-        """How many coefficients the profile has."""
+        """Number of coefficients of the profile."""
 
     @property
     def amount(self) -> str:
-        """How large the profile is, as 6 coefficients."""
+        """Size of the profile in words, such as 6 coefficients."""
         return f"{self.size} {self.term}{'s' if self.size != 1 else ''}"
 
     def steps_between_breaks(self, steps: int) -> int:
@@ -76,7 +76,7 @@ class JointProfile(ABC):
 
     @property
     def label(self) -> str:
-        """What the profile is called in a message."""
+        """Name of the profile with its size, for messages."""
         return f"{self.name} of {self.amount}"
 
     def refuse_no_choice(self) -> None:

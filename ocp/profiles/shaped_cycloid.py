@@ -234,7 +234,7 @@ class ShapedCycloid(JointProfile):
         return tuple(sorted({at / duration for at in (*begins, *ends) if 0 < at < duration}))
 
     def at_duration(self, duration: Expression) -> Self:
-        """The same shaper in a move that takes so long [s]."""
+        """Return this shaper in a move of another duration [s]."""
         timed = copy(self)
         object.__setattr__(timed, "duration", duration)
         return timed

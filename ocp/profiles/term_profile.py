@@ -61,7 +61,7 @@ class TermProfile(JointProfile):
 
     @property
     def size(self) -> int:
-        """How many coefficients the profile has."""
+        """Number of coefficients of the profile."""
         return self.fixed_coefficients + self.coefficients_of_term * self.terms
 
 
