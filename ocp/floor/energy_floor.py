@@ -110,7 +110,7 @@ class Floor(MotionAnswer):
 
     @property
     def smooth(self) -> bool:
-        """Whether the acceleration is continuous."""
+        """Return whether the acceleration is continuous."""
         return bool(np.any(self.free.jerk))
 
     @property
@@ -120,7 +120,7 @@ class Floor(MotionAnswer):
 
     @property
     def settled(self) -> bool:
-        """Whether this is within the tolerance; otherwise the refinement ended early."""
+        """Return whether the last grids agree within the tolerance; else refinement ended early."""
         return abs(self.change) <= self.tolerance * self.levels[-1].energy
 
     @property
@@ -151,7 +151,7 @@ class Floor(MotionAnswer):
         return self.change * ratio / (1 - ratio) + missed
 
     def agreeing(self, share: float = 0.005) -> int:
-        """How many starts ended within a share of the best of them."""
+        """Number of starts that ended within a share of the best of them."""
         return sum(energy <= min(self.starts) * (1 + share) for energy in self.starts)
 
     @cached_property

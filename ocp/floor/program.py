@@ -111,7 +111,7 @@ def _interval(
 
 @dataclass(frozen=True)
 class FreeSolution:
-    """What one run of the solver gives, in SI units and by its own discretisation."""
+    """The result of one run of the solver, in SI units and by its own discretisation."""
 
     free: FreeMotion
     energy: float
@@ -170,7 +170,7 @@ class FloorProgram:
         ]
 
     def _compile(self, steps: int, warm: bool) -> tuple[Compiled, Array]:
-        """What `_build` gives, guarded."""
+        """Build the solver for a number of steps, guarded, and the upper bounds of its unknowns."""
         solver, upper = Compiled.guard(lambda: self._build(steps, warm))
         return Compiled(lambda: solver, silent=True), upper
 
