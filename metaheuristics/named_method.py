@@ -1,4 +1,4 @@
-"""What the name of a method says: the one place where it is read, and written."""
+"""Names of methods: the one place where they are read, admitted and written."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class NamedMethod:
 
     @property
     def by_gradient(self) -> bool:
-        """Whether it is the gradient's alone: such a front lies on a line, polished or not."""
+        """Return whether this is by the gradient alone: its front is a line, polished or not."""
         return self.method in BY_GRADIENT
 
     def polished(self) -> NamedMethod:

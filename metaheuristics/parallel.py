@@ -36,7 +36,7 @@ def side_by_side(
     *,
     apart: bool = False,
 ) -> Iterator[Any]:
-    """What a function gives for each item, as they end.
+    """Call a function for each item and yield the results as they end.
 
     In this process with one worker, unless all is to be `apart` from it, else in so many of
     joblib's, of one thread each; or in those of the dask scheduler whose address stands in place of
@@ -151,7 +151,7 @@ def scheduler_address(text: str) -> str:
 
 
 def _threads_of(scheduler: str) -> int:
-    """How many threads the workers of a scheduler have; any error where it does not answer."""
+    """Return how many threads a scheduler's workers have; any error if it does not answer."""
     from distributed.core import rpc
     from distributed.security import Security
 

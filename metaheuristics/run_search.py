@@ -212,7 +212,7 @@ def _run(
     first: NDArray[np.float64],
     limits: Mapping[str, int],
 ) -> Iterator[int]:
-    """How many generations are done, after each; one of a method that is a function."""
+    """Run a method and yield the generations that are done; a function has one."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
     from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem

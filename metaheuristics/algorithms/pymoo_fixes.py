@@ -26,7 +26,7 @@ def _decided(pairs: Winners, first_less_second: NDArray[np.float64], random_stat
 
 
 def _difference(pop: Population, name: str, pairs: Winners) -> NDArray[np.float64]:
-    """How much the first of each pair is above the second."""
+    """Return the sign of the first of each pair less the second."""
     values = np.asarray(pop.get(name), dtype=float).ravel()[pairs]
     return np.sign(values[:, 0] - values[:, 1])
 

@@ -1,4 +1,4 @@
-"""What an algorithm is set to, in plain numbers and words: part of the record of a front."""
+"""Read the settings of an algorithm as plain numbers and words, for the record of a front."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a method that is known by name is built of pymoo's parts."""
+"""Build a method that is known by name from pymoo's parts."""
 
 from __future__ import annotations
 

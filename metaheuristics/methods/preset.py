@@ -1,4 +1,4 @@
-"""What a method that is known by name is, and how an algorithm is made of it.
+"""A method that is known by name, and how an algorithm is made of it.
 
 pymoo is imported when one is made and not before: it takes longer to load than all of quietarm,
 and a list of names does not need it.
@@ -114,7 +114,7 @@ class Preset:
         return {setting.name for setting in self.settings}
 
     def stated(self, values: Mapping[str, Value]) -> dict[str, Value]:
-        """What a record says of checked settings: an option of a solver only if it was changed."""
+        """Return the settings that a record states; a solver's option only if it was changed."""
         usual = {setting.name: setting.default for setting in self.settings if setting.is_of_solver}
         return {
             name: value

@@ -1,4 +1,4 @@
-"""What methods may be set to, each once: the argument of an algorithm, its name and its values."""
+"""The settings of methods, each defined once: the argument of an algorithm, its name and values."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ class MethodSetting:
 
     @property
     def is_of_solver(self) -> bool:
-        """Whether it is an option of the method's solver, which a record has if it was changed."""
+        """Return whether this is an option of the method's solver, stated only if changed."""
         return self.argument.startswith(f"{NAME}.")
 
 

@@ -35,7 +35,7 @@ class AskTell(Protocol):
         ...
 
     def tell(self, candidates: ArrayLike, objectives: NDArray, violations: NDArray) -> None:
-        """What `ask` returned last, and its values as of `MoveFunction`."""
+        """Take the candidates that `ask` returned last, and their values as of `MoveFunction`."""
         ...
 
 
@@ -43,12 +43,12 @@ Method: TypeAlias = "str | Algorithm | AskTell | Callable[..., Any]"
 
 
 def is_of_pymoo(method: object) -> bool:
-    """Whether a method is one of pymoo's algorithms."""
+    """Return whether a method is one of pymoo's algorithms."""
     return hasattr(method, "infill")
 
 
 def method_name(method: Method) -> str:
-    """What a method is called."""
+    """Return the name of a method."""
     if isinstance(method, str):
         return method
     return getattr(method, "__name__", type(method).__name__)

@@ -163,7 +163,7 @@ class NamedProblem:
 
     @property
     def named(self) -> bool:
-        """Whether it is one of `PROBLEMS`."""
+        """Return whether this is one of `PROBLEMS`."""
         return self.reference_front is None and PROBLEMS.get(self.name) == self
 
     def recorded(
