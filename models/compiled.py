@@ -54,7 +54,7 @@ class Compiled:
     @property
     @interruptible
     def function(self) -> ca.Function:
-        """The function, to build others of."""
+        """The CasADi function, to build others of."""
         if self._function is None:
             with _TURN, self._muted():
                 self._function = self._function or self._build()

@@ -55,7 +55,7 @@ class Unit:
 
     @classmethod
     def named(cls, symbol: str) -> Unit:
-        """Return the unit of this symbol, which is the same of every plant.
+        """Return the unit of a symbol, whatever the plant.
 
         ValueError where it is no symbol: what has powers is a product of units.
         """
@@ -212,5 +212,5 @@ _BY_NAME = {words.rotary: words for words in (ANGLE, TORQUE)}
 
 
 def words_of(name: str) -> Words:
-    """The words for what is known by a name: of `angle` and `torque` two, of others the name."""
+    """Return the words of a known name: two for `angle` and `torque`, the name for others."""
     return _BY_NAME.get(name, Words(name))

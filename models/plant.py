@@ -95,7 +95,7 @@ class FullEquations(Protocol):
         ...
 
     def tip(self, path: JointMotion, angles: Any) -> Any:
-        """Where the tip is [m], a column."""
+        """Position of the tip [m], a column."""
         ...
 
     def modal_state(self, place: float, state: np.ndarray) -> np.ndarray:
@@ -107,7 +107,7 @@ class Follower(Protocol):
     """A joint that moves as another one does."""
 
     def motion(self, leading: JointMotion) -> JointMotion:
-        """Its motion by that of the joint that it follows."""
+        """Motion of a joint by that of the joint that it follows."""
         ...
 
 

@@ -355,7 +355,7 @@ def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
 
 
 def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
-    """At rest the structure stays at rest, and there are motions that move every tip."""
+    """Check that the structure stays at rest and that motions move every tip."""
     still = values[:, -1]
     moving = np.abs(values).max(axis=1)
     # What counts as nothing, relative to the values of a moving joint.

@@ -688,7 +688,7 @@ class RobotOnPath(Plant):
         return stick_figure_of(self.robot, self.path).bodies(angle, tips)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
-        """Their rates [m/s]."""
+        """Speeds of the tips [m/s]."""
         of = self._coefficients(path, "tips")
         rows = of["rows"]
         slopes = of["slopes"]
@@ -725,7 +725,7 @@ class RobotOnPath(Plant):
 
     @property
     def _errors(self) -> dict[str, Expression]:
-        """By which multiples are not 1, of those that may be another."""
+        """Multiples that are not 1, of those that may be another number."""
         multiples = {name: getattr(self, name) for name in VARIED}
         return {
             name: value - 1

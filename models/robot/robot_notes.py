@@ -89,7 +89,7 @@ def _millimetres(urdf: Urdf) -> Iterator[Note]:
 
 
 def _own_friction(robot: RobotParts) -> Iterator[Note]:
-    """Where the robot's friction stands in place of the URDF's."""
+    """Note joints in which the robot's friction stands in place of the URDF's."""
     joints = robot.description.joints
     for entry, of_urdf, unit, unit_of_sliding in (
         ("friction", "damping", "N m s/rad", "N s/m"),

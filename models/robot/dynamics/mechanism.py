@@ -180,7 +180,7 @@ def _at_the_motors(robot: RobotParts, values: Mapping[str, float]) -> Array:
 
 
 def _base(tree: _Tree, robot: RobotParts) -> tuple[int, Frame]:
-    """Where the root link stands: on the ground, or on a pedestal that rocks about x and y."""
+    """Frame of the root link: on the ground, or on a pedestal that rocks about x and y."""
     if robot.base is None:
         return GROUND, Frame()
     pivot = Frame(origin=np.array([0.0, 0.0, -robot.base.height]))
@@ -197,7 +197,7 @@ def _add_link(tree: _Tree, urdf: Urdf, link: str, place: tuple[int, Frame]) -> N
 
 
 def _place(tree: _Tree, joint: UrdfJoint) -> tuple[int, Frame]:
-    """Where the frame of a joint stands."""
+    """Return the place of a joint's frame."""
     number, frame = tree.links[joint.parent]
     return number, frame @ joint.frame
 
@@ -205,7 +205,7 @@ def _place(tree: _Tree, joint: UrdfJoint) -> tuple[int, Frame]:
 def _joined(
     tree: _Tree, robot: RobotParts, joint: UrdfJoint, place: tuple[int, Frame]
 ) -> tuple[int, Frame]:
-    """Where the link after a joint stands, and the bodies that it takes."""
+    """Return the place of the link after a joint, and the bodies that the joint takes."""
     if joint.kind == FIXED:
         return place
     slides = joint.kind == PRISMATIC

@@ -56,7 +56,7 @@ class MovingRobot(RobotParts):
 
     @interruptible
     def kinematics(self, link: str | None = None) -> Kinematics:
-        """Where a link stands, if nothing bends; by default that with the beam, or else the tip.
+        """Return the kinematics of a link; by default of that with the beam, or else the tip.
 
         Raises
         ------

@@ -76,7 +76,7 @@ class FullRobot:
         return torques + ca.vertcat(*coulomb_torques(self._robot, self.joints(path)))
 
     def tip(self, path: JointMotion, angles: ca.SX) -> ca.SX:
-        """Where the tip is, seen from the ground [m]."""
+        """Position of the tip, seen from the ground [m]."""
         positions = ca.vertcat(*(joint.angle for joint in self.joints(path)), angles)
         _, origin = self._dynamics.place(self._tip, positions)
         return origin
@@ -116,6 +116,6 @@ class FullRobot:
 
 
 def _padded(table: Array, terms: int) -> Array:
-    """With zeros for terms that a derivative has no more."""
+    """Pad with zeros for terms that a derivative has no more."""
     missing: Sequence[tuple[int, int]] = [(0, 0), (0, terms - table.shape[1]), (0, 0)]
     return np.pad(table, missing)

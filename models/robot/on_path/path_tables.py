@@ -311,14 +311,14 @@ def reach() -> tuple[float, float]:
 
 
 def _filled(table: Array, terms: int) -> Array:
-    """With zeros for the terms that are not needed."""
+    """Fill up with zeros for the terms that are not needed."""
     filled = np.zeros((table.shape[0], terms, *table.shape[2:]))
     filled[:, : table.shape[1]] = table
     return filled
 
 
 class _Layout:
-    """Where every coefficient stands in a row, and how large it is."""
+    """Places of all coefficients in a row, and their sizes."""
 
     def __init__(self, example: Coefficients) -> None:
         self._parts = {name: part.shape[1:] for name, part in _named(example).items()}

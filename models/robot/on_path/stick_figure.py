@@ -33,7 +33,7 @@ def stick_figure_of(robot: MovingRobot, path: GeometricPath) -> StickFigure:
 
 
 class StickFigure:
-    """Where the joints and the tip of a robot are drawn, seen from the side on which its tip goes.
+    """Places at which a robot's joints and tip are drawn, seen from the side on which its tip goes.
 
     What bends does so as its modes do.
     """

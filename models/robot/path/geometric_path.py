@@ -224,7 +224,7 @@ class GeometricPath:
     def of(
         cls, function: Callable[[float], ArrayLike], joints: Sequence[str] = ()
     ) -> GeometricPath:
-        """By a function of s from 0 to 1 that gives the joints' positions [rad or m].
+        """Make a path by a function of s from 0 to 1 that gives the joints' positions [rad or m].
 
         It is approximated within 1e-12.
         """

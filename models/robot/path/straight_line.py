@@ -90,7 +90,7 @@ def off_straight(kinematics: Kinematics, path: Callable[[Array], Array]) -> floa
 
 
 class _Line:
-    """From pose to pose: straight, and turning about one axis."""
+    """A straight line from pose to pose that turns about one axis."""
 
     def __init__(self, begin: Pose, end: Pose) -> None:
         self._begin = begin

@@ -46,7 +46,7 @@ class _Bound:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Its entries."""
+        """Names of the entries."""
         return tuple(filter(None, (self.has, self.most, self.least)))
 
 
