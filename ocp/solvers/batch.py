@@ -103,7 +103,7 @@ class Batch:
 
     @cached_property
     def places(self) -> Mapping[str, slice]:
-        """Where the values of each limited quantity stand among all."""
+        """Places of the values of each limited quantity among all."""
         return places_of(self.simulation)
 
     @cached_property
@@ -306,7 +306,7 @@ class Batch:
         )
 
     def _by_coefficient(self, output: Array, rows: int) -> Array:
-        """From (value, coefficient, step; candidate) to (candidate; coefficient; value, step)."""
+        """Turn (value, coefficient, step; candidate) into (candidate; coefficient; value, step)."""
         size = self.simulation.profile.size
         by_axis = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
         return by_axis.transpose(3, 1, 0, 2).reshape(rows, size, -1)

@@ -21,7 +21,7 @@ def stand_in(solver: Solver) -> Solver | None:
 
 
 def other_solver(solver: Solver) -> Solver:
-    """The other of the two, with the same options, which checks what this one found."""
+    """Return the other of the two solvers with the same options, which checks the first one."""
     return stand_in(solver) or solver.as_kind(Sqp)
 
 

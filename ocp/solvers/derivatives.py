@@ -384,12 +384,12 @@ class _Differentiated:
 
 
 def _swap(entry: ca.MX, groups: int) -> ca.MX:
-    """From groups of columns to groups of the first in each, of the second and so on."""
+    """Regroup columns: the first of each group, then the second of each, and so on."""
     return entry[:, np.arange(entry.shape[1]).reshape(groups, -1).T.ravel().tolist()]
 
 
 def _reverse(by_step: Any) -> Any:
-    """From the last step to the first."""
+    """Turn the steps round, from the last to the first."""
     several = isinstance(by_step, ca.MX) and by_step.shape[1] > 1
     return by_step[:, ::-1] if several else by_step
 

@@ -98,7 +98,7 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Ended:
-    """Where the rows ended: points (rows, n), multipliers, why, after how many iterations (rows,).
+    """The ends of the rows: points (rows, n), multipliers, reasons, numbers of iterations (rows,).
 
     The violation (rows,) is the largest distance from c = 0 and from the bounds of v.
     """

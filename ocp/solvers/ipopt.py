@@ -140,7 +140,7 @@ class _Form(NamedTuple):
 
 @lru_cache(maxsize=16)
 def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
-    """The program of a form, as of `_build_program`."""
+    """Compile the program of a form by `_build_program`."""
     return Compiled.guard(lambda: _build_program(simulation, form, solver, warm))
 
 

@@ -183,7 +183,7 @@ class _Rows(NamedTuple):
     give: Array
 
     def and_(self, more: _Rows) -> _Rows:
-        """These and others."""
+        """Join these rows and others."""
         return _Rows(*map(np.concatenate, zip(self, more)))
 
     def excess_at(self, step: Array) -> Array:
@@ -192,7 +192,7 @@ class _Rows(NamedTuple):
 
 
 def _peaks(values: Array, above: float) -> NDArray[np.bool_]:
-    """Where values above a level are no smaller than their neighbours."""
+    """Return the places of values above a level that are no smaller than their neighbours."""
     before = np.append(-np.inf, values[:-1])
     after = np.append(values[1:], -np.inf)
     return (values > above) & (values >= before) & (values >= after)

@@ -90,7 +90,7 @@ class Program:
 
     @classmethod
     def of(cls, task: PointToPoint, profile: JointProfile, steps: int | None = None) -> Self:
-        """On so many steps, or on as many as the task and the profile take to begin with."""
+        """Make the program on a number of steps, by default the usual one of task and profile."""
         return cls(task, profile, steps or first_steps(task, profile))
 
     def asking(self, **changes: Any) -> Self:
@@ -124,7 +124,7 @@ class Program:
 
     @_OfSteps
     def batch(self) -> Batch:
-        """Their derivatives, in any scenario."""
+        """The motions with derivatives that this program is evaluated by, in any scenario."""
         return batch_of(self.evaluator.simulation)
 
     @_OfSteps
@@ -145,7 +145,7 @@ class Program:
 
     @property
     def tip_rows(self) -> list[Array]:
-        """For each scenario, rows that give tip displacements from the state on arrival."""
+        """Rows that give tip displacements from the state on arrival, for each scenario."""
         return self.evaluator.tip_rows
 
     @_OfSteps

@@ -136,7 +136,7 @@ class Solver:
 
     @classmethod
     def options(cls) -> list[Option]:
-        """Its options, in the order of its fields."""
+        """List the options of the solver, in the order of its fields."""
         kinds = get_type_hints(cls)
         return [
             entry.metadata[_OPTION]._replace(
@@ -148,7 +148,7 @@ class Solver:
 
     @classmethod
     def stated_options(cls) -> list[Option]:
-        """Its options on which an answer depends."""
+        """List the options on which an answer depends."""
         return [entry for entry in cls.options() if entry.stated]
 
     def solve(
