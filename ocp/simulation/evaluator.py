@@ -353,7 +353,7 @@ def _compiled_values(simulation: Simulation) -> RowFunction:
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:
-    """The values of so many candidates.
+    """Build the function that gives the values of a number of candidates.
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """

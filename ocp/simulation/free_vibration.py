@@ -246,7 +246,7 @@ def powers(rows: Array, step: Array, count: int) -> Array:
 
 
 def _stacked(entries: Sequence[Sequence[Expression]], count: int) -> Array:
-    """Entries that are numbers or columns, as so many matrices."""
+    """Stack entries that are numbers or columns into matrices."""
     columns = [
         [np.broadcast_to(np.array(ca.DM(entry)).ravel(), count) for entry in row] for row in entries
     ]

@@ -97,7 +97,7 @@ class Simulation(NamedTuple):
 
     @property
     def mesh(self) -> Mesh:
-        """Where the steps begin and end."""
+        """The mesh: where the steps begin and end."""
         return mesh_of(self.profile, self.steps, self.breaks)
 
     def rollout(
@@ -124,7 +124,7 @@ class Simulation(NamedTuple):
 
 @lru_cache(maxsize=128)
 def places_of(simulation: Simulation) -> Mapping[str, slice]:
-    """Where the values of each quantity stand among all of a candidate."""
+    """Places of the values of each quantity among all of a candidate."""
     places: dict[str, slice] = {}
     first = 0
     for quantity in simulation.quantities:
