@@ -70,7 +70,7 @@ class JointProfile(ABC):
         return f"{self.size} {self.term}{'s' if self.size != 1 else ''}"
 
     def steps_between_breaks(self, steps: int) -> int:
-        """The least between two of its `breaks`, of so many steps of the whole move."""
+        """Return how many steps of the move lie between its two nearest `breaks`."""
         del steps
         return self.steps_of_a_piece
 
@@ -106,7 +106,7 @@ class JointProfile(ABC):
         return -largest, largest
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Where the gradient's random starts lie, as `box`, but finite."""
+        """Return the box of the gradient's random starts, like `box` but finite."""
         return self.box(self.unbounded_spread if bound is None else bound)
 
     @property

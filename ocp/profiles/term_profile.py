@@ -45,7 +45,7 @@ class TermProfile(JointProfile):
 
     @property
     def amount(self) -> str:
-        """As 6 terms."""
+        """Size of the profile in words, such as 6 terms."""
         return f"{self.terms} {self.term}{'s' if self.terms != 1 else ''}"
 
     @classmethod
