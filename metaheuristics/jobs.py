@@ -131,7 +131,7 @@ class Job:
 
     @property
     def name(self) -> str:
-        """Its file in a folder, without the ending."""
+        """Name of the job's file in a folder, without the ending."""
         spent = "" if self.budget is None else f"{self.budget}-evaluations-"
         method = re.sub(r"[/\\\0\n]|^\.+", "-", self.label.replace(":", "-by-"))  # one folder
         return f"{self.problem.name}/{method}/{spent}seed{self.seed}"

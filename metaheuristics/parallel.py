@@ -57,7 +57,7 @@ def side_by_side(
 def _in_processes(
     function: Callable[[Any], Any], items: Sequence[Any], workers: int
 ) -> Iterator[Any]:
-    """By joblib's processes, which end soon after this one, however it ends."""
+    """Call in joblib's processes, which end soon after this one, however it ends."""
     from joblib import Parallel, delayed, parallel_config
 
     watched: Any = {"initializer": _watch_parent, "initargs": (os.getpid(),)}
@@ -96,7 +96,7 @@ def _end_with(parent: int) -> None:
 def _on_cluster(
     function: Callable[[Any], Any], items: Sequence[Any], scheduler: str
 ) -> Iterator[Any]:
-    """By the workers of a dask scheduler, be it one of one thread."""
+    """Call in the workers of a dask scheduler, even if it has one of one thread."""
     with _connect(scheduler) as client:
         from distributed import as_completed
         from distributed.scheduler import KilledWorker

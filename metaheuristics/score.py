@@ -209,7 +209,7 @@ class InvertedDistance(Indicator):
 
 
 class AdditiveEpsilon(Indicator):
-    """Least shift by which the points weakly dominate the stations."""
+    """The least shift by which the points weakly dominate the stations."""
 
     name = "epsilon"
     label = "additive epsilon"
@@ -249,7 +249,7 @@ def objectives(front: Front) -> Array:
 
 
 def within(points: Array, residuals: Sequence[float] | Array) -> Array:
-    """Least energies [J] of points within residuals [m]; NaN where there is none."""
+    """Return the least energies [J] of points within residuals [m]; NaN if there is none."""
     energies = [points[points[:, 0] <= residual, 1] for residual in residuals]
     return np.array([some.min() if some.size else np.nan for some in energies])
 

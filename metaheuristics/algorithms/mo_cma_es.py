@@ -42,7 +42,7 @@ class Strategies:
         return Strategies(**{name: table[rows].copy() for name, table in vars(self).items()})
 
     def with_more(self, more: Strategies) -> Strategies:
-        """These and then those."""
+        """Append the strategies of more individuals."""
         return Strategies(
             **{
                 name: np.concatenate([table, getattr(more, name)])

@@ -37,7 +37,7 @@ def by_violation(pop: Population, pairs: Winners, random_state: Any, **options: 
 
 
 def by_niche(pop: Population, pairs: Winners, random_state: Any, **options: Any) -> Winners:
-    """As `by_violation`; of two feasible ones of a niche the better in rank, then in distance."""
+    """Compare as `by_violation` does; within a niche by rank, and then by distance."""
     decision = _difference(pop, "CV", pairs)
     feasible = np.asarray(pop.get("FEAS")).ravel()[pairs].all(axis=1)
     alike = np.zeros(len(pairs), dtype=bool)

@@ -196,7 +196,7 @@ class Preset:
         return (objectives if self.by_swarms else 1) * population * generations
 
     def unfit_for(self, objectives: int, noise: float = 0.0) -> str:
-        """Why it is not for a problem of so many objectives, or with noise; empty where it is."""
+        """Say why the method does not fit so many objectives, or noise; empty if it fits."""
         if self.residual_and_energy and objectives > 2:
             return f"{self.name} is for residual and energy alone, not for {objectives} objectives"
         if self.takes_gradients and noise > 0:

@@ -1,4 +1,4 @@
-"""A method of one's own: a function, an object that is asked and told, an algorithm of pymoo."""
+"""The user's own methods: functions, objects that are asked and told, algorithms of pymoo."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _refuse_unused(outcome: object, function: RecordedFunction) -> None:
 
 
 def digest_of(method: Method) -> str:
-    """A digest of one's own method, by which runs of an older one are known; empty of quietarm's.
+    """Digest a user's own method, to recognise runs of an older one; empty for quietarm's.
 
     Of a function its code, defaults and what it encloses, not what it calls; of an object all that
     it holds, and where it is asked and told the code of its class. Of a name that of its class.
