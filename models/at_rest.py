@@ -15,7 +15,7 @@ from quietarm.models.joint_motion import Array
 
 
 def eigenvalues(slopes: Array) -> NDArray[np.complex128]:
-    """Of the modes [1/s], two for each mode, at every angle."""
+    """Return the modes' eigenvalues [1/s], two for each mode, at every angle."""
     by_W, by_dW = _of_modes(slopes)
     unit = np.broadcast_to(np.eye(by_W.shape[1]), by_W.shape)
     return np.linalg.eigvals(np.block([[0 * unit, unit], [by_W, by_dW]])).astype(complex)

@@ -87,11 +87,11 @@ class FullEquations(Protocol):
         ...
 
     def accelerations(self, path: JointMotion, angles: Any, rates: Any) -> Any:
-        """Of the angles, a column."""
+        """Return the accelerations of the angles, a column."""
         ...
 
     def torques(self, path: JointMotion, angles: Any, rates: Any) -> Any:
-        """Of every joint [N m], a column."""
+        """Return the torque of every joint [N m], a column."""
         ...
 
     def tip(self, path: JointMotion, angles: Any) -> Any:

@@ -503,7 +503,7 @@ class RobotOnPath(Plant):
 
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """How many modal amplitudes it has."""
+        """Number of modal amplitudes of the robot on its path."""
         return len(modes_on(self.robot, self.path))
 
     def _check_rotors(self) -> None:
@@ -551,7 +551,7 @@ class RobotOnPath(Plant):
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """Of the driven joints."""
+        """Names of the driven joints."""
         return self.robot.joints
 
     @property

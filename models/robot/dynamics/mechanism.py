@@ -83,7 +83,7 @@ class Mechanism:
 
     @property
     def spring_names(self) -> list[str]:
-        """Of the sprung joints."""
+        """Names of the sprung joints."""
         return [self.bodies[number].joint for number in self.sprung]
 
     def stiffened(self, factor: float) -> Mechanism:

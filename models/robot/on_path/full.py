@@ -60,7 +60,7 @@ class FullRobot:
         ]
 
     def accelerations(self, path: JointMotion, angles: ca.SX, rates: ca.SX) -> ca.SX:
-        """Of the springs' angles."""
+        """Return the accelerations of the springs' angles."""
         unknown = ca.SX.sym("acceleration", self.springs)
         torques = self._torques(path, angles, rates, unknown)[self._dynamics.driven :]
         masses = ca.jacobian(torques, unknown)
@@ -70,7 +70,7 @@ class FullRobot:
         return -ca.ldl_solve(forces, *ca.ldl(masses))
 
     def torques(self, path: JointMotion, angles: ca.SX, rates: ca.SX) -> ca.SX:
-        """Of the driven joints."""
+        """Return the torques of the driven joints."""
         accelerations = self.accelerations(path, angles, rates)
         torques = self._torques(path, angles, rates, accelerations)[: self._dynamics.driven]
         return torques + ca.vertcat(*coulomb_torques(self._robot, self.joints(path)))
@@ -106,7 +106,7 @@ class FullRobot:
     def _torques(
         self, path: JointMotion, angles: ca.SX, rates: ca.SX, accelerations: ca.SX
     ) -> ca.SX:
-        """Of all joints, by inverse dynamics."""
+        """Return the torques of all joints, by inverse dynamics."""
         joints = self.joints(path)
         return self._dynamics.torques(
             ca.vertcat(*(joint.angle for joint in joints), angles),

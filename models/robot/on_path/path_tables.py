@@ -94,7 +94,7 @@ class Tables:
 
     @property
     def groups(self) -> dict[str, dict[str, Array]]:
-        """Of the modes, the torques, and the tips' rows and their slopes."""
+        """Tables of the modes, the torques, and the tips' rows and their slopes, by group."""
         return {
             "modes": self.modes,
             "torques": self.torques,

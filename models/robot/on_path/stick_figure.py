@@ -92,7 +92,7 @@ class StickFigure:
         return sum(not self._bodies[row - 1].of_beam for row in chain)
 
     def _origins(self, place: float, tips: Array) -> Array:
-        """Of the ground, of every body, and the tip [m], shape (bodies + 2, 3)."""
+        """Return the origins of the ground, every body and the tip [m], shape (bodies + 2, 3)."""
         q = self._path(place)
         p = sag_at(self._dynamics, q)
         rows = self._tables.at(float(place)).values(self._tables.tips)

@@ -313,7 +313,7 @@ class GeometricPath:
 
     @cached_property
     def off_straight(self) -> Array:
-        """How far a spline leaves the straight lines between its waypoints, by joint [rad or m].
+        """Largest distance of a spline from straight lines between its waypoints [rad or m].
 
         0 of a line, and of a path that a function gives.
         """

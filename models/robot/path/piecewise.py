@@ -62,7 +62,7 @@ class Piecewise:
         return values
 
     def derivative(self, order: int = 1) -> Piecewise:
-        """Of every function by the variable."""
+        """Return the derivative of every function by the variable."""
         pieces = range(len(self.coefficients))
         return Piecewise(self.knots, np.array([self._differentiated(i, order) for i in pieces]))
 
@@ -178,7 +178,7 @@ class Place:
         self._basis = ca.vertcat(*(here * term for here in on for term in basis[:terms]))
 
     def values(self, table: Array) -> Array:
-        """Of functions by their coefficients, (pieces, terms, ...): an array of expressions.
+        """Return values of functions of coefficients (pieces, terms, ...): an array of expressions.
 
         Those that are nothing on any piece are the number 0.0.
         """
