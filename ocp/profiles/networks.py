@@ -18,7 +18,7 @@ from quietarm.ocp.profiles.term_profile import TermProfile
 
 
 class Range(NamedTuple):
-    """Of one kind of the units' parameters; of shape (units,), or one number for all of them."""
+    """The range of one of the units' parameters: of shape (units,), or one number for all."""
 
     first: NDArray[np.float64] | float
     spread: NDArray[np.float64] | float

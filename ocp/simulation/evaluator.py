@@ -153,7 +153,7 @@ class Evaluator:
 
     @cached_property
     def tip_rows(self) -> list[Array]:
-        """Of each scenario, the rows that give the residual of a state on arrival, to 5e-5."""
+        """Rows that give the residual of a state on arrival, to 5e-5, for each scenario."""
         return [vibration.rows for vibration in self.vibrations]
 
     @interruptible

@@ -193,7 +193,7 @@ def _tip(equations: FullEquations) -> ca.Function:
 
 
 def _tip_places(tip: Compiled, place: float, angles: Array) -> Array:
-    """Of many states with the joints at rest, shape (states, 3)."""
+    """Return the tip's place in many states with the joints at rest, shape (states, 3)."""
     return np.array([tip(place, column)[0].ravel() for column in angles.T])
 
 

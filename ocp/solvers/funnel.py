@@ -239,7 +239,7 @@ class _Descent:
         return self.widths[self.stage[rows]]
 
     def log_line(self, number: int) -> str:
-        """Of the row with the least objective, scaled; and how many are going."""
+        """Describe the row with the least objective, scaled, and how many rows are going."""
         row = self.going[np.argmin(self.f[self.going])]
         return (
             f"{number:4}{len(self.going):8}{self.f[row]:12.6f}{self.violation[row]:11.1e}"
