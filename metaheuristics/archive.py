@@ -1,4 +1,4 @@
-"""What a search finds: every candidate that none before it dominates, and the effort until then."""
+"""The archive of a search: candidates that none before dominates, and the effort until then."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ class Archive:
         failed: int = 0,
         infeasible: int = 0,
     ) -> Front:
-        """What was found, at most 100 points of it by CVODES, with every candidate that entered.
+        """Make a front of at most 100 points by CVODES, with every candidate that entered.
 
         The record states the method and its settings; here it gets the effort and the versions.
         """

@@ -16,7 +16,7 @@ from quietarm.metaheuristics.methods.gradient_methods import (
     gradient_front,
     polished,
     solver_with,
-    split_solver_options,
+    split_for_polish,
 )
 from quietarm.metaheuristics.methods.presets import PRESETS, preset_of
 from quietarm.metaheuristics.methods.user_method import (
@@ -28,13 +28,13 @@ from quietarm.metaheuristics.methods.user_method import (
     run_method,
     why_not_sent,
 )
-from quietarm.metaheuristics.named_method import GRADIENT, POLISH, NamedMethod
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
 from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
 from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
-from quietarm.ocp.checks import unknown, whole, words_of_error
+from quietarm.ocp.checks import whole, words_of_error
 from quietarm.ocp.objectives import refuse_more_objectives
 from quietarm.ocp.record import Setting
 
@@ -51,8 +51,8 @@ class Job:
     problem : NamedProblem
         The problem, or the name of one of `PROBLEMS`.
     method : str, pymoo Algorithm, AskTell or callable
-        A search of `PRESETS`, alone or polished by the gradient (``"nsga2+polish"``); a method
-        of `GRADIENT`, as ``"epsilon"`` or ``"weighted:ipopt"``; an algorithm of pymoo that was not
+        A search of `PRESETS`, alone or polished by the gradient (``"nsga2+polish"``); a method by
+        the gradient, as ``"epsilon"`` or ``"weighted:ipopt"``; an algorithm of pymoo that was not
         run yet; your own object with ``setup(function, seed)``, ``ask()`` and ``tell(candidates,
         objectives, violations)``, which is copied for each job; or your own function, called with
         the problem's recorded function, seed and budget. Of their candidates the first `budget`
@@ -96,17 +96,18 @@ class Job:
     ) -> None:
         problem = problem_of(problem) if isinstance(problem, str) else problem
         share = noise_share(noise)
+        named = NamedMethod.admitted(method, PRESETS) if isinstance(method, str) else None
+        method = str(named) if named else method
         fields = {
             "problem": problem,
             "method": method,
             "seed": whole("seed", seed, 0),
-            "budget": _budget(method, budget, settings or {}, len(problem.objectives)),
+            "budget": _budget(named or method, budget, settings or {}, len(problem.objectives)),
             "settings": dict(settings or {}),
             "noise": share,
             "reevaluate": times_evaluated(reevaluate, share),
         }
-        named = NamedMethod.read(method) if isinstance(method, str) else None
-        if named and named.is_gradient_job:
+        if named and named.by_gradient:
             refuse_more_objectives(named.method, problem.objectives)
             if share:
                 raise ValueError(
@@ -130,7 +131,7 @@ class Job:
 
     @property
     def name(self) -> str:
-        """Its file in a folder, without the ending."""
+        """Name of the job's file in a folder, without the ending."""
         spent = "" if self.budget is None else f"{self.budget}-evaluations-"
         method = re.sub(r"[/\\\0\n]|^\.+", "-", self.label.replace(":", "-by-"))  # one folder
         return f"{self.problem.name}/{method}/{spent}seed{self.seed}"
@@ -167,7 +168,7 @@ class Job:
             "bound": problem.bound,
             "seed": self.seed,
         }
-        if named and named.is_gradient_job:
+        if named and named.by_gradient:
             if rehearse:
                 settings["starts" if named.method == "multistart" else "points"] = rehearsal
             return gradient_front(
@@ -182,9 +183,9 @@ class Job:
         options = dict[str, Any]()
         if named:
             method = named.method
-            if named.polish:
-                options, settings = split_solver_options(settings)
             preset = PRESETS[method]
+            if named.polish:
+                options, settings = split_for_polish(settings, preset.setting_names)
             of_population = population or preset.population
             size = preset.evaluations(of_population, 1, len(problem.objectives))
         assert budget is not None  # only the gradient ends by itself
@@ -210,32 +211,25 @@ class Job:
 
 
 def _budget(
-    method: Method, budget: int | None, settings: Mapping[str, Setting], objectives: int
+    method: NamedMethod | Method,
+    budget: int | None,
+    settings: Mapping[str, Setting],
+    objectives: int,
 ) -> int | None:
     """The evaluations of a method for so many objectives.
 
     ValueError where method, settings and budget do not fit.
     """
-    named = NamedMethod.read(method) if isinstance(method, str) else None
-    if named and named.is_gradient_job:
-        if budget is not None:
-            raise ValueError(f"{named} ends by itself; leave its budget out")
-        check_settings(named, settings)
-        return None
-    if named:
-        if named.method not in PRESETS or named != NamedMethod(named.method, polish=named.polish):
-            raise ValueError(
-                unknown(
-                    "method",
-                    str(method),
-                    [*PRESETS, *GRADIENT],
-                    f", NAME{POLISH}",
-                )
-            )
-        preset = preset_of(named.method)
+    if isinstance(method, NamedMethod):
+        if method.by_gradient:
+            if budget is not None:
+                raise ValueError(f"{method} ends by itself; leave its budget out")
+            check_settings(method, settings)
+            return None
+        preset = preset_of(method.method)
         search_settings = dict(settings)
-        if named.polish:
-            options, search_settings = split_solver_options(settings)
+        if method.polish:
+            options, search_settings = split_for_polish(settings, preset.setting_names)
             solver_with(options)  # refuses what is out of range
         population: Any = search_settings.pop("population", preset.population)
         preset.checked(population, search_settings)

@@ -36,7 +36,7 @@ def side_by_side(
     *,
     apart: bool = False,
 ) -> Iterator[Any]:
-    """What a function gives for each item, as they end.
+    """Call a function for each item and yield the results as they end.
 
     In this process with one worker, unless all is to be `apart` from it, else in so many of
     joblib's, of one thread each; or in those of the dask scheduler whose address stands in place of
@@ -57,7 +57,7 @@ def side_by_side(
 def _in_processes(
     function: Callable[[Any], Any], items: Sequence[Any], workers: int
 ) -> Iterator[Any]:
-    """By joblib's processes, which end soon after this one, however it ends."""
+    """Call in joblib's processes, which end soon after this one, however it ends."""
     from joblib import Parallel, delayed, parallel_config
 
     watched: Any = {"initializer": _watch_parent, "initargs": (os.getpid(),)}
@@ -96,7 +96,7 @@ def _end_with(parent: int) -> None:
 def _on_cluster(
     function: Callable[[Any], Any], items: Sequence[Any], scheduler: str
 ) -> Iterator[Any]:
-    """By the workers of a dask scheduler, be it one of one thread."""
+    """Call in the workers of a dask scheduler, even if it has one of one thread."""
     with _connect(scheduler) as client:
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
@@ -151,7 +151,7 @@ def scheduler_address(text: str) -> str:
 
 
 def _threads_of(scheduler: str) -> int:
-    """How many threads the workers of a scheduler have; any error where it does not answer."""
+    """Return how many threads a scheduler's workers have; any error if it does not answer."""
     from distributed.core import rpc
     from distributed.security import Security
 

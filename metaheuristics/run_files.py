@@ -1,4 +1,4 @@
-"""Whether the file of a run is of a job: by the digest of the job that it names."""
+"""Check that the file of a run belongs to a job, by the digest of the job that it names."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _digest(content: list[Any]) -> str:
 
 
 def _different_job(front: Front, job: Job) -> str:
-    """What a file says of method, seed, settings and budget that is not the job's."""
+    """Say which method, seed, setting or budget of a file is not the job's."""
     stated = {
         "method": front.record.method,
         "seed": front.record.seed,

@@ -212,7 +212,7 @@ def _run(
     first: NDArray[np.float64],
     limits: Mapping[str, int],
 ) -> Iterator[int]:
-    """How many generations are done, after each; one of a method that is a function."""
+    """Run a method and yield the generations that are done; a function has one."""
     from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
     from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
@@ -311,7 +311,7 @@ def _of_preset(
         most,
         f"{most} take 1.6 GB of memory",
     )
-    stated = {"population": size, **preset.checked(size, settings)}
+    stated = {"population": size, **preset.stated(preset.checked(size, settings))}
     if evaluations is not None:
         preset.refuse_less_than_one(evaluations, size, objectives)
     return preset.build(size, settings, objectives), stated

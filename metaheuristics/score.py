@@ -1,4 +1,4 @@
-"""How good the points of a front are, computed from them when it is asked for.
+"""Score the points of a front; scores are computed when they are asked for.
 
 An indicator is one class: searches, benches and comparisons use, tabulate and test every one that
 is known. Formulas: docs/measures.md.
@@ -42,7 +42,7 @@ BETWEEN = 300
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """What points are measured against.
+    """The scale against which points are measured.
 
     Attributes
     ----------
@@ -180,7 +180,7 @@ class Indicator(ABC):
 
 
 class Hypervolume(Indicator):
-    """What points dominate up to the corner, as a share of what is the whole there."""
+    """The volume that points dominate up to the corner, as a share of the whole there."""
 
     name = "hypervolume"
     unit = "%"
@@ -209,7 +209,7 @@ class InvertedDistance(Indicator):
 
 
 class AdditiveEpsilon(Indicator):
-    """Least shift by which the points weakly dominate the stations."""
+    """The least shift by which the points weakly dominate the stations."""
 
     name = "epsilon"
     label = "additive epsilon"
@@ -249,7 +249,7 @@ def objectives(front: Front) -> Array:
 
 
 def within(points: Array, residuals: Sequence[float] | Array) -> Array:
-    """Least energies [J] of points within residuals [m]; NaN where there is none."""
+    """Return the least energies [J] of points within residuals [m]; NaN if there is none."""
     energies = [points[points[:, 0] <= residual, 1] for residual in residuals]
     return np.array([some.min() if some.size else np.nan for some in energies])
 
@@ -281,7 +281,7 @@ def _share_at(front: Front, mark: Mark) -> float:
 
 
 def _dominating(front: Front, mark: Mark, most: int | None = None) -> Array:
-    """What was found until a mark; by the gradient, which has no entries, the front itself.
+    """Return the points that were found until a mark; for the gradient, the front itself.
 
     At most so many points. What dominates is what the search believed; its true values are given.
     """
@@ -361,14 +361,14 @@ def _neighbours(points: Array) -> list[tuple[int, int]]:
 
 
 def _whole_of(stations: Array) -> float:
-    """What a reference front dominates, up to the corner."""
+    """Return the volume that a reference front dominates, up to the corner."""
     if stations.shape[1] > len(RESIDUAL_AND_ENERGY):
         return float(moocore.hypervolume(stations, ref=[CORNER] * stations.shape[1]))
     return _hypervolume_of_line(stations)
 
 
 def _hypervolume_of_line(stations: Array) -> float:
-    """What the straight lines through points dominate, up to the corner."""
+    """Return the area that the straight lines through points dominate, up to the corner."""
     residuals, energies = stations.T
     # the last point is the cheapest there is
     residuals = np.append(residuals, CORNER)

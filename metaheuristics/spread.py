@@ -32,7 +32,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """The quartiles of so many seeds; infinite of none."""
+        """Return the quartiles over seeds; infinite if there are none."""
         known = (
             np.where(
                 np.isfinite(values),

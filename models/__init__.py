@@ -1,4 +1,4 @@
-"""What moves: plants as symbolic equations; and the door to CasADi's functions (`compiled`)."""
+"""Plants, which are symbolic equations of motion, and the door to CasADi (`compiled`)."""
 
 import casadi
 

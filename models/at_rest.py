@@ -1,4 +1,4 @@
-"""Whether a plant can exist, by its equations linearised with the joint at rest.
+"""Check that a plant can exist, by its equations linearised with the joint at rest.
 
 Torque over joint speed is an impedance Z(s). No work is gained where it is positive real (Brune, J.
 Math. and Phys. 10, 1931): where its real part is not negative for any s whose own is positive.
@@ -15,7 +15,7 @@ from quietarm.models.joint_motion import Array
 
 
 def eigenvalues(slopes: Array) -> NDArray[np.complex128]:
-    """Of the modes [1/s], two for each mode, at every angle."""
+    """Return the modes' eigenvalues [1/s], two for each mode, at every angle."""
     by_W, by_dW = _of_modes(slopes)
     unit = np.broadcast_to(np.eye(by_W.shape[1]), by_W.shape)
     return np.linalg.eigvals(np.block([[0 * unit, unit], [by_W, by_dW]])).astype(complex)

@@ -88,5 +88,5 @@ def _wave_number(index: int, ratio: Expression) -> Expression:
 
 
 def _integral(*factors: Sequence[Expression]) -> Expression:
-    """Of a product along the beam, each factor given at the places."""
+    """Integrate a product of factors along the beam, each given at the places of the quadrature."""
     return sum(prod(at) for at in zip(_WEIGHTS, *factors))

@@ -54,7 +54,7 @@ class Compiled:
     @property
     @interruptible
     def function(self) -> ca.Function:
-        """The function, to build others of."""
+        """The CasADi function, to build others of."""
         if self._function is None:
             with _TURN, self._muted():
                 self._function = self._function or self._build()
@@ -67,7 +67,7 @@ class Compiled:
 
     @interruptible
     def run(self, inputs: Sequence[ArrayLike], read: Callable[[list[Array]], T]) -> T:
-        """What is read of the outputs; these and the inputs are transposed.
+        """Call the function and return what `read` takes from the outputs; arrays are transposed.
 
         The next call overwrites the outputs: read copies of them.
         """
@@ -96,7 +96,7 @@ class Compiled:
     @staticmethod
     @interruptible
     def guard(work: Callable[[], T]) -> T:
-        """What comes of work with CasADi that is no single function, guarded in the same way."""
+        """Do other work with CasADi, guarded as a single function is, and return its result."""
         with _TURN:
             return work()
 

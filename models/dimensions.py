@@ -55,7 +55,7 @@ class Unit:
 
     @classmethod
     def named(cls, symbol: str) -> Unit:
-        """Return the unit of this symbol, which is the same of every plant.
+        """Return the unit of a symbol, whatever the plant.
 
         ValueError where it is no symbol: what has powers is a product of units.
         """
@@ -76,7 +76,7 @@ class Unit:
 
     @property
     def is_tip_way(self) -> bool:
-        """Whether it is that of the tip's way, which is shown in millimetres."""
+        """Return whether this is the unit of a tip's displacement, shown in millimetres."""
         return self.powers == TIP.powers
 
     def __mul__(self, other: Unit) -> Unit:
@@ -212,5 +212,5 @@ _BY_NAME = {words.rotary: words for words in (ANGLE, TORQUE)}
 
 
 def words_of(name: str) -> Words:
-    """The words for what is known by a name: of `angle` and `torque` two, of others the name."""
+    """Return the words of a known name: two for `angle` and `torque`, the name for others."""
     return _BY_NAME.get(name, Words(name))

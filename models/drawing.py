@@ -1,4 +1,4 @@
-"""How a structure looks, in metres: for pictures, no equation of motion uses this."""
+"""Shapes of structures in metres, for pictures alone: no equation of motion uses them."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class FlexibleBeam(Plant):
 
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """How many modal amplitudes it has."""
+        """Number of modal amplitudes of the beam."""
         return int(self.mode_count)
 
     @property
@@ -103,7 +103,7 @@ class FlexibleBeam(Plant):
         )
 
     def carrying(self, tip_mass: float) -> FlexibleBeam:
-        """The same beam, of the same stiffness, with another mass [kg] at its tip."""
+        """Return this beam with another mass [kg] at its tip and the same stiffness."""
         (before,), *_ = beam_modes(1, self.tip_mass / self._mass, 0.0)
         (after,), *_ = beam_modes(1, tip_mass / self._mass, 0.0)
         return replace(

@@ -1,4 +1,4 @@
-"""What a plant's equations are given of the joint."""
+"""The joint's motion, as a plant's equations take it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MIXED = "mixed"
 
 
 def is_zero(entry: Expression) -> bool:
-    """Whether an expression is nothing whatever the symbols are: so that it costs nothing."""
+    """Return whether an expression is zero whatever the symbols are, so that it costs nothing."""
     return isinstance(entry, float) and entry == 0.0
 
 

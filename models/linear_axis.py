@@ -63,7 +63,7 @@ class LinearAxis(Plant):
 
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """How many modal amplitudes it has."""
+        """Number of modal amplitudes of the axis."""
         return int(self.mode_count)
 
     @property

@@ -1,4 +1,4 @@
-"""What is said of a plant beside the figures of its motions: warnings, in one line each."""
+"""Warnings about a plant, in one line each, which stand beside the figures of its motions."""
 
 from __future__ import annotations
 

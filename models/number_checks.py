@@ -141,7 +141,7 @@ def whole(name: str, value: Any, least: int, most: int | None = None, because: s
 
 
 def words_of_error(error: BaseException) -> str:
-    """What went wrong in a user's own lines, in one line; also where they end the process."""
+    """Say in one line what went wrong in a user's own code, even if it ends the process."""
     text = " ".join(str(error).split())
     if isinstance(error, SystemExit):
         return f"it calls sys.exit({text}), which would end quietarm as well; leave that out"
@@ -201,5 +201,5 @@ def spelling(name: str) -> str:
 
 
 def install(extra: str) -> str:
-    """How to install what an extra of this project holds."""
+    """Return the command that installs the libraries of an extra of this project."""
     return f"install it: pip install 'quietarm[{extra}]', or '.[{extra}]' in a clone"

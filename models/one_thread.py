@@ -27,7 +27,7 @@ class _Libraries:
     """Some libraries of linear algebra, on one thread while a call needs it."""
 
     def __init__(self, by_thread: bool) -> None:
-        """Those that have a number of threads for each thread of Python, or those that do not."""
+        """Take libraries whose threads are set for each thread of Python, or the others."""
         self._by_thread = by_thread
         self._turn = RLock()
         self._calls = WeakSet[_Call]()
@@ -89,7 +89,7 @@ def _set(library: Any, threads: int) -> None:
 
 
 class _OfThread(local):
-    """What each thread of Python has of its own."""
+    """Values that each thread of Python has of its own."""
 
     def __init__(self) -> None:
         self.libraries = _Libraries(by_thread=True)

@@ -87,15 +87,15 @@ class FullEquations(Protocol):
         ...
 
     def accelerations(self, path: JointMotion, angles: Any, rates: Any) -> Any:
-        """Of the angles, a column."""
+        """Return the accelerations of the angles, a column."""
         ...
 
     def torques(self, path: JointMotion, angles: Any, rates: Any) -> Any:
-        """Of every joint [N m], a column."""
+        """Return the torque of every joint [N m], a column."""
         ...
 
     def tip(self, path: JointMotion, angles: Any) -> Any:
-        """Where the tip is [m], a column."""
+        """Position of the tip [m], a column."""
         ...
 
     def modal_state(self, place: float, state: np.ndarray) -> np.ndarray:
@@ -107,7 +107,7 @@ class Follower(Protocol):
     """A joint that moves as another one does."""
 
     def motion(self, leading: JointMotion) -> JointMotion:
-        """Its motion by that of the joint that it follows."""
+        """Motion of a joint by that of the joint that it follows."""
         ...
 
 
@@ -276,7 +276,7 @@ class Plant(ABC):
 
     @property
     def _tips_follow_the_modes(self) -> bool:
-        """Whether the tips' displacements are the same everywhere on the path."""
+        """Return whether the tips' displacements are the same everywhere on the path."""
         return type(self).tips_at is Plant.tips_at
 
     @property
@@ -290,7 +290,7 @@ class Plant(ABC):
     @property
     @final
     def has_path(self) -> bool:
-        """Whether what its equations take as the joint's angle is a place on a path."""
+        """Return whether the joint's angle in the equations is a place on a path."""
         return self.along_path or len(self.joint_names) > 1
 
     @property
@@ -308,7 +308,7 @@ class Plant(ABC):
 
     @property
     def tip_names(self) -> tuple[str, ...]:
-        """What displacements of the tips are called in tables: tip_1, tip_2; of one tip, tip."""
+        """Names of the tips' displacements in tables: tip_1 and tip_2, or tip if there is one."""
         numbers = range(1, self.tips + 1)
         return ("tip",) if self.tips == 1 else tuple(f"tip_{number}" for number in numbers)
 
@@ -330,7 +330,7 @@ class Plant(ABC):
 
     @property
     def label(self) -> str:
-        """What reports call it, by default its name."""
+        """Name of the plant in reports; by default its `name`."""
         return self.name
 
     @property
@@ -408,7 +408,7 @@ class Plant(ABC):
     @property
     @final
     def tips(self) -> int:
-        """How many tip displacements the plant has."""
+        """Number of tip displacements of the plant."""
         return len(self.tips_at(JointMotion(ca.SX.sym("angle"), 0.0, 0.0), [0.0] * self.modes))
 
     @final

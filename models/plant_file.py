@@ -98,7 +98,7 @@ class WithPlantFiles:
         self._function = function
 
     def __call__(self, *arguments: Any) -> Any:
-        """What the function gives."""
+        """Call the function."""
         return self._function(*arguments)
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -149,7 +149,7 @@ def _plants_of(file: PlantFile) -> Mapping[str, type[Plant]]:
 
 
 def _classes_of(module: ModuleType) -> Iterator[type[Any]]:
-    """What a file defines that is complete: plants, profiles, energies."""
+    """Return the complete classes that a file defines, such as plants, profiles and energies."""
     for kind in vars(module).values():
         defined_there = isinstance(kind, type) and kind.__module__ == module.__name__
         if defined_there and not (issubclass(kind, Plant) and _is_incomplete(kind)):
@@ -157,7 +157,7 @@ def _classes_of(module: ModuleType) -> Iterator[type[Any]]:
 
 
 def _has_only_unfinished(module: ModuleType) -> bool:
-    """Whether a file defines plants, and none of them is complete."""
+    """Return whether a file defines plants of which none is complete."""
     kinds = [kind for kind in vars(module).values() if isinstance(kind, type)]
     plants = [
         kind for kind in kinds if issubclass(kind, Plant) and kind.__module__ == module.__name__
@@ -166,7 +166,7 @@ def _has_only_unfinished(module: ModuleType) -> bool:
 
 
 def _is_incomplete(plant: type[Plant]) -> bool:
-    """Whether a plant is a base of others."""
+    """Return whether a plant is only a base of others."""
     return isabstract(plant) or not isinstance(vars(plant).get("name"), str)
 
 

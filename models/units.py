@@ -73,7 +73,7 @@ def parse_quantity(text: str, unit: str, what: str) -> float:
 
 
 def is_number(text: str) -> bool:
-    """Whether a text is a number alone, without a unit."""
+    """Return whether a text is a number alone, without a unit."""
     try:
         float(text)
     except ValueError:

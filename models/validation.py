@@ -136,7 +136,7 @@ def _angles_of(plant: Plant) -> Array:
 
 
 def _gives(plant: Plant, method: str) -> bool:
-    """Whether the plant has a method of its own in place of the contract's."""
+    """Return whether the plant has a method of its own in place of the contract's."""
     contract = next(kind for kind in reversed(type(plant).__mro__) if "joints" in vars(kind))
     return getattr(type(plant), method) is not getattr(contract, method)
 
@@ -218,7 +218,7 @@ def _tips(plant: Plant, path: JointMotion, W: list[Expression]) -> list[Expressi
 
 
 def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
-    """What a method returns, as a list."""
+    """Call a method of the plant and return its result as a list."""
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings(
@@ -244,7 +244,7 @@ def _call(plant: Plant, method: str, *arguments: object) -> list[Expression]:
 
 
 def _first_line(error: BaseException) -> str:
-    """What went wrong in a method, of casadi's many lines the first."""
+    """Say what went wrong in a method, by the first of casadi's many lines."""
     if isinstance(error, SystemExit):
         return words_of_error(error)
     text = str(error).strip().partition("\n")[0]
@@ -252,7 +252,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _wrong(plant: Plant, method: str, what: str, remedy: str = "") -> ValueError:
-    """What a method does, and what to do about it."""
+    """Make the error about what a method does, with a remedy."""
     write = f"write def {method}{_WRITE[method]} for modes = {plant.modes}"
     symbols = (
         "with casadi.cos, casadi.if_else and so on, as math, numpy, if and max take no symbols"
@@ -355,7 +355,7 @@ def _check_finite(plant: Plant, motions: Array, table: Array) -> None:
 
 
 def _check_rest(plant: Plant, motions: Array, values: Array) -> None:
-    """At rest the structure stays at rest, and there are motions that move every tip."""
+    """Check that the structure stays at rest and that motions move every tip."""
     still = values[:, -1]
     moving = np.abs(values).max(axis=1)
     # What counts as nothing, relative to the values of a moving joint.

@@ -49,16 +49,16 @@ class Figure:
     Attributes
     ----------
     name : str
-        Its name, as ``rms_torque``.
+        Its name, such as ``rms_torque``.
     unit : Unit
-        Its SI unit, as `EFFORT`.
+        Its SI unit, such as `EFFORT`.
     label : Words
         What it is, where the joint turns and where it slides.
     of : callable
         The figure of a `JudgedMotion`, a motion that CVODES has judged; where a motion has none,
         infinite or no number.
     symbol : str
-        Its symbol, as F1.
+        Its symbol, such as F1.
     digits : int
         How many digits are shown.
     shown : frozenset of str
@@ -72,7 +72,8 @@ class Figure:
     """
 
     example: ClassVar[str] = (
-        "a figure, as Figure('rms_torque', EFFORT, Words('RMS torque'), rms('torque'))"
+        "a figure, as Figure('rms_torque', EFFORT, Words('RMS torque'), rms('torque')), with unit "
+        "and words of quietarm.models.dimensions"
     )
 
     name: str
@@ -214,14 +215,17 @@ _ACTS_AFTER = Figure(
     asked_by=lambda task: task.band is not None,
 )
 _POWER = Figure("peak_power", WATT, Words("peak power"), _peak_power, shown=frozenset({PAGE}))
-_OVERSHOOT = Figure(
-    "overshoot",
-    WAY,
-    Words("overshoot"),
-    lambda candidate: candidate.overshoot,
-    digits=3,
-    shown=frozenset({REPORT}),
+OTHERS = (
+    Figure(
+        "overshoot",
+        WAY,
+        Words("overshoot"),
+        lambda candidate: candidate.overshoot,
+        digits=3,
+        shown=frozenset({REPORT}),
+    ),
 )
+"""Figures that stand after the peaks: one more of quietarm's own is an entry here."""
 
 
 _added: dict[str, Figure] = {}
@@ -242,12 +246,12 @@ class _Table(Mapping[str, Figure]):
 
     def _entries(self) -> dict[str, Figure]:
         torque, *peaks = map(peak_figure, QUANTITIES.values())
-        figures = (*_FIRST, _ACTS_AFTER, torque, _POWER, *peaks, _OVERSHOOT, *_added.values())
+        figures = (*_FIRST, _ACTS_AFTER, torque, _POWER, *peaks, *OTHERS, *_added.values())
         return {figure.name: figure for figure in figures}
 
 
 FIGURES: Mapping[str, Figure] = _Table()
-"""Every figure by its name: a new one is one entry, or `add_figure` in a file of one's own."""
+"""Every figure by its name: a new one is an entry of `OTHERS`, or `add_figure` in a user's file."""
 
 
 @takes(figure=Figure)

@@ -85,7 +85,8 @@ class Quantity:
     """
 
     example: ClassVar[str] = (
-        "a quantity, as Quantity('tip_speed', TIP / SECOND, Words('tip speed'), of_sample)"
+        "a quantity, as Quantity('tip_haste', TIP / SECOND, Words('tip haste'), lambda sample: "
+        "sample.tip_speeds), with unit and words of quietarm.models.dimensions"
     )
 
     name: str

@@ -110,3 +110,26 @@ def test_no_class_has_the_name_of_a_type_that_is_written_elsewhere():
     }
     assert written
     assert not [(name, path) for name, path in written if classes.get(name, path) != path]
+
+
+READ_ALONE = (
+    "models", "ocp/solvers", "ocp/simulation", "ocp/profiles", "ocp/floor", "metaheuristics",
+)  # fmt: skip
+"""Rooms in which every docstring can be read alone; one more may be added once it can."""
+HANGING = ("The same", "Those ", "That of", "As of", "Of ", "What ", "Whatever ", "Whether ",
+           "How ", "By how", "Such ", "None of", "All that", "Its ", "Their ", "They ",
+           "It ")  # fmt: skip
+"""Words with which a sentence begins that says nothing without the one before it, or the code."""
+
+
+def test_a_docstring_begins_with_a_verb_or_a_noun():
+    """As an editor shows it: "Return whether ..." or "Number of ...", not "Whether ..."."""
+    hanging = [
+        f"{path}: {line}"
+        for path, tree in TREES.items()
+        if path.as_posix().startswith(READ_ALONE)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+        if (line := (ast.get_docstring(node) or "").partition("\n")[0]).startswith(HANGING)
+    ]
+    assert not hanging, "begin with what it does or what it is: " + "; ".join(hanging)

@@ -55,7 +55,7 @@ class Differences:
         return self._values
 
     def slopes(self, x: Array) -> Array:
-        """Derivatives of the same, shape (values, variables)."""
+        """Derivatives of the values, shape (values, variables)."""
         values = self.values(x)
         x = np.clip(x, self._lower, self._upper)
         slopes = self._slopes
@@ -136,7 +136,7 @@ def _random_limits(differences: Differences, function: Any, random: np.random.Ge
 
 
 def _residual_left(differences: Differences, cheapest: Array) -> float:
-    """By the cheapest motion, and more than nothing."""
+    """Residual of the cheapest motion, and more than nothing."""
     return max(float(differences.values(cheapest)[0]), 1e-12)
 
 

@@ -11,6 +11,7 @@ than there are coefficients. Its processor time is that of the search.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import moocore
@@ -24,6 +25,7 @@ from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.ocp.cost import COST
 from quietarm.ocp.front.tradeoff import Tradeoff
 from quietarm.ocp.planning.request import Request
+from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
 Rows = NDArray[np.int64]
@@ -42,6 +44,8 @@ class MemeticMOEAD(ScaledMOEAD):
         Candidates that are improved at a time.
     gradient_iterations : int
         Iterations of the solver for each.
+    solver : Solver
+        The solver, with its options but for these iterations.
     **settings : Any
         As of `ScaledMOEAD`.
     """
@@ -52,12 +56,13 @@ class MemeticMOEAD(ScaledMOEAD):
         gradient_every: int = 10,
         gradient_points: int = 10,
         gradient_iterations: int = 5,
+        solver: Solver = Sqp(),
         **settings: Any,
     ) -> None:
         super().__init__(ref_dirs, **settings)
         self.gradient_every = gradient_every
         self.gradient_points = gradient_points
-        self.gradient_iterations = gradient_iterations
+        self.solver = replace(solver, iterations=gradient_iterations)
 
     def _setup(self, problem: Any, **options: Any) -> None:
         function = getattr(problem, "function", None)
@@ -69,9 +74,8 @@ class MemeticMOEAD(ScaledMOEAD):
         super()._setup(problem, **options)
         self._function = function
         steps = search_steps(function.task, function.profile)
-        solver = Sqp(iterations=self.gradient_iterations)
         request = Request(
-            function.task, function.profile, solver, function.bound, starts=1, steps=steps
+            function.task, function.profile, self.solver, function.bound, starts=1, steps=steps
         )
         self._tradeoff = Tradeoff.begin(request)
 

@@ -27,7 +27,7 @@ Rows = NDArray[np.int64]
 
 @dataclass
 class Strategies:
-    """What individuals know, a row for each, in a box that is scaled to 0 to 1."""
+    """Strategy parameters of individuals, a row for each, in a box that is scaled to 0 to 1."""
 
     X: Array
     F: Array
@@ -42,7 +42,7 @@ class Strategies:
         return Strategies(**{name: table[rows].copy() for name, table in vars(self).items()})
 
     def with_more(self, more: Strategies) -> Strategies:
-        """These and then those."""
+        """Append the strategies of more individuals."""
         return Strategies(
             **{
                 name: np.concatenate([table, getattr(more, name)])

@@ -141,7 +141,7 @@ class ScaledMOEAD(ArrayAlgorithm):
         return (self.weights * ((F - self.ideal) / extent)).max(axis=1)
 
     def _extent(self, F: Array, violation: Array) -> Array:
-        """From the ideal to the largest objectives of the non-dominated, feasible individuals."""
+        """Return the extent of the non-dominated, feasible individuals in each objective."""
         table = np.vstack([self.objectives, F])
         table = table[np.append(self.violation, violation) <= 0]
         if not len(table):

@@ -26,7 +26,7 @@ def _decided(pairs: Winners, first_less_second: NDArray[np.float64], random_stat
 
 
 def _difference(pop: Population, name: str, pairs: Winners) -> NDArray[np.float64]:
-    """How much the first of each pair is above the second."""
+    """Return the sign of the first of each pair less the second."""
     values = np.asarray(pop.get(name), dtype=float).ravel()[pairs]
     return np.sign(values[:, 0] - values[:, 1])
 
@@ -37,7 +37,7 @@ def by_violation(pop: Population, pairs: Winners, random_state: Any, **options: 
 
 
 def by_niche(pop: Population, pairs: Winners, random_state: Any, **options: Any) -> Winners:
-    """As `by_violation`; of two feasible ones of a niche the better in rank, then in distance."""
+    """Compare as `by_violation` does; within a niche by rank, and then by distance."""
     decision = _difference(pop, "CV", pairs)
     feasible = np.asarray(pop.get("FEAS")).ravel()[pairs].all(axis=1)
     alike = np.zeros(len(pairs), dtype=bool)

@@ -1,4 +1,4 @@
-"""How offspring differ from their parents, for all at once."""
+"""Vary parents into offspring, for all at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a particle moves: the constants of its velocity, and what happens at the bounds.
+"""The motion of a particle: the constants of its velocity, and what happens at the bounds.
 
 References
 ----------

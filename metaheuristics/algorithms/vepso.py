@@ -239,7 +239,7 @@ class VEPSO(Algorithm):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """In plain numbers and words."""
+        """Settings of the swarms in plain numbers and words."""
         names = ("particles", "boundary", "velocity_limit", "archive_size", "iterations")
         return {**{name: getattr(self, name) for name in names}, **asdict(self.rule)}
 

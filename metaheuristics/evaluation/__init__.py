@@ -1,4 +1,4 @@
-"""What is minimised: residual, energy and violations of a whole population, as a pymoo problem.
+"""The objectives of a search: residual, energy and violations of a whole population, for pymoo.
 
 It may import `ocp` and `models`, and nothing else of `metaheuristics`.
 """

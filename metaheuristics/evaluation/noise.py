@@ -31,7 +31,7 @@ def noise_share(value: object) -> float:
 
 
 def times_evaluated(value: object, noise: float) -> int:
-    """How often a candidate that is kept is evaluated; ValueError where nothing would differ."""
+    """Check how often a candidate that is kept is evaluated; ValueError if nothing would differ."""
     times = whole("reevaluate", value, 1, 1000)
     if times > 1 and not noise:
         raise ValueError(
@@ -43,7 +43,7 @@ def times_evaluated(value: object, noise: float) -> int:
 
 @dataclass(frozen=True)
 class Belief:
-    """What a search with noise believed of the candidates that it took for the best.
+    """The errors of a search with noise about the candidates that it took for the best.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Belief:
 
 
 def belief_of(front: Front) -> Belief | None:
-    """What a search believed, and what is true; None of a front without noise or candidates."""
+    """Compare a noisy search's values with the true ones; None without noise or candidates."""
     import moocore  # not at the top: it takes long to load
 
     entries = front.entries

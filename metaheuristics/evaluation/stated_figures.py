@@ -1,4 +1,4 @@
-"""Whether the figures that a file states are those of its motions."""
+"""Check that the figures that a file states are those of its motions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ T = TypeVar("T", float, Array)
 
 
 def agrees(stated: T, gives: T, least: float | Array) -> Any:
-    """Whether a stated figure is what a motion gives, element by element; what is NaN is not."""
+    """Return whether stated figures are those of a motion, element by element; NaN is not."""
     return abs(stated - gives) <= AGREEMENT * abs(gives) + least
 
 
@@ -64,7 +64,7 @@ def _check_points(front: Front) -> None:
 
 
 def _check_entries(front: Front) -> None:
-    """The same of the candidates that a search found; a front of another method has none."""
+    """Check the figures of the candidates that a search found; other fronts have none."""
     entries = front.entries
     if not len(entries):
         return

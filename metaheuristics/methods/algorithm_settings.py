@@ -1,4 +1,4 @@
-"""What an algorithm is set to, in plain numbers and words: part of the record of a front."""
+"""Read the settings of an algorithm as plain numbers and words, for the record of a front."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pymoo.core.variable import Variable
 
 
 def settings_of(algorithm: Algorithm) -> dict[str, Any]:
-    """The settings of an algorithm of one's own that was not run yet."""
+    """Return the settings of a user's own algorithm that was not run yet."""
     renamed = {"pop_size": "population", "n_offsprings": "offspring"}
     operators = ("sampling", "selection", "crossover", "mutation", "survival", "decomposition")
     stated = getattr(algorithm, "settings", None)

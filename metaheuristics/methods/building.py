@@ -1,4 +1,4 @@
-"""How a method that is known by name is built of pymoo's parts."""
+"""Build a method that is known by name from pymoo's parts."""
 
 from __future__ import annotations
 
@@ -17,11 +17,14 @@ from pymoo.operators.mutation.pm import PM
 from quietarm.metaheuristics.algorithms.velocity import VelocityRule
 from quietarm.metaheuristics.methods.settings import Value
 from quietarm.metaheuristics.thinning import farthest_apart
+from quietarm.ocp.solvers.choice import SOLVERS
+from quietarm.ocp.solvers.sqp import Sqp
 
 _OPERATORS: Mapping[str, Callable[..., Any]] = {
     "crossover": SBX,
     "mutation": PM,
     "rule": VelocityRule,
+    "solver": lambda **options: SOLVERS[Sqp.name](**options),
 }
 """Arguments of an algorithm that have arguments of their own."""
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -11,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from quietarm.metaheuristics.archive import search_versions
+from quietarm.metaheuristics.methods.settings import MethodSetting, with_defaults
 from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, epsilon_front, weighted_front
-from quietarm.ocp.checks import has_no, whole
+from quietarm.ocp.checks import whole
 from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.polish import polish_front
@@ -103,30 +105,47 @@ def gradient_front(
 
 def check_settings(method: NamedMethod, settings: Mapping[str, Any]) -> None:
     """Refuse settings that a method by the gradient does not have, or that are out of range."""
-    options, method_settings = split_solver_options(settings, method.solver)
-    checks = {"points": number_of_points, "starts": number_of_starts}
-    _, size = _FRONTS[method.method]
-    for name, value in method_settings.items():
-        if name != size:
-            known = [size, *solver_settings(method.solver)]
-            raise ValueError(has_no(str(method), "setting", name, known))
-        checks[name](value)
-    solver_with(options, method.solver)
+    with_defaults(str(method), gradient_settings(method), settings)
 
 
-def solver_settings(solver: str = "") -> list[str]:
+def gradient_settings(method: NamedMethod) -> tuple[MethodSetting, ...]:
+    """The settings of a method by the gradient: how many points or starts, and its solver's."""
+    find, size = _FRONTS[method.method]
+    sizes: Mapping[str, tuple[str, Callable[[object], int]]] = {
+        "points": ("points of the front", number_of_points),
+        "starts": ("random starts, one for each of as many residual limits", number_of_starts),
+    }
+    meaning, check = sizes[size]
+    default = inspect.signature(find).parameters[size].default
+    own = MethodSetting(size, size, default, meaning, lambda _, value: check(value))
+    return own, *solver_settings(method.solver)
+
+
+def solver_settings(solver: str = "") -> list[MethodSetting]:
     """Settings of a method that are options of its solver, by default of the own SQP."""
-    return [entry.setting for entry in SOLVERS[solver or Sqp.name].stated_options()]
+    return list(map(MethodSetting.of_solver, SOLVERS[solver or Sqp.name].stated_options()))
 
 
 def split_solver_options(
     settings: Mapping[str, Any], solver: str = ""
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Options of a method's solver, as solver_tolerance, and the method's other settings."""
-    names = solver_settings(solver)
+    names = {setting.name for setting in solver_settings(solver)}
     options = {name: value for name, value in settings.items() if name in names}
     method_settings = {name: value for name, value in settings.items() if name not in names}
     return options, method_settings
+
+
+def split_for_polish(
+    settings: Mapping[str, Any], known: Collection[str]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Options of the solver that polishes, and the settings of the search before it.
+
+    Options that the search knows as well, since it takes steps of the gradient, are for both.
+    """
+    options, others = split_solver_options(settings)
+    shared = {name: value for name, value in options.items() if name in known}
+    return options, others | shared
 
 
 def solver_with(options: Mapping[str, Any], name: str = "") -> Solver:

@@ -1,4 +1,4 @@
-"""What a method that is known by name is, and how an algorithm is made of it.
+"""A method that is known by name, and how an algorithm is made of it.
 
 pymoo is imported when one is made and not before: it takes longer to load than all of quietarm,
 and a list of names does not need it.
@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 from quietarm.metaheuristics.methods.search_method import SearchMethod
 from quietarm.metaheuristics.methods.settings import MethodSetting, Value, with_defaults
 from quietarm.ocp.checks import install
+from quietarm.ocp.solvers.choice import SOLVERS
+from quietarm.ocp.solvers.sqp import Sqp
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
@@ -99,7 +101,26 @@ class Preset:
                 MethodSetting(name, name, value, "of one's own", self.own.check)
                 for name, value in self.defaults.items()
             )
-        return tuple(MethodSetting.of(argument, value) for argument, value in self.defaults.items())
+        settings = [MethodSetting.of(argument, value) for argument, value in self.defaults.items()]
+        if self.takes_gradients:  # how many iterations it has is a setting of the method
+            options = SOLVERS[Sqp.name].stated_options()
+            own = [entry for entry in options if entry.name != "iterations"]
+            settings += map(MethodSetting.of_solver, own)
+        return tuple(settings)
+
+    @property
+    def setting_names(self) -> set[str]:
+        """The names of these settings."""
+        return {setting.name for setting in self.settings}
+
+    def stated(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Return the settings that a record states; a solver's option only if it was changed."""
+        usual = {setting.name: setting.default for setting in self.settings if setting.is_of_solver}
+        return {
+            name: value
+            for name, value in values.items()
+            if name not in usual or value != usual[name]
+        }
 
     def build(
         self,
@@ -175,7 +196,7 @@ class Preset:
         return (objectives if self.by_swarms else 1) * population * generations
 
     def unfit_for(self, objectives: int, noise: float = 0.0) -> str:
-        """Why it is not for a problem of so many objectives, or with noise; empty where it is."""
+        """Say why the method does not fit so many objectives, or noise; empty if it fits."""
         if self.residual_and_energy and objectives > 2:
             return f"{self.name} is for residual and energy alone, not for {objectives} objectives"
         if self.takes_gradients and noise > 0:

@@ -9,14 +9,13 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from quietarm.metaheuristics.methods.settings import Value
+from quietarm.metaheuristics.named_method import BY_GRADIENT
 from quietarm.ocp.checks import failed_in, forgotten_if_refused, quoted
 
 if TYPE_CHECKING:
     from pymoo.core.algorithm import Algorithm
 
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
-
-_OF_GRADIENT = ("epsilon", "weighted", "multistart")
 
 
 class SearchMethod(ABC):
@@ -125,7 +124,7 @@ def _check_definition(kind: type[SearchMethod]) -> None:
             f"name of the search {kind.__name__} is {quoted(name)}; give small letters, digits "
             "and hyphens"
         )
-    if name in _OF_GRADIENT:
+    if name in BY_GRADIENT:
         raise ValueError(f"search {name} has the name of a gradient method; give another")
     if "label" not in vars(kind):
         kind.label = name

@@ -1,4 +1,4 @@
-"""What methods may be set to, each once: the argument of an algorithm, its name and its values."""
+"""The settings of methods, each defined once: the argument of an algorithm, its name and values."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from quietarm.ocp.checks import finite, has_no, nearest, not_negative, positive, whole
+from quietarm.ocp.solvers.solver import NAME, Option
 
 Value = float | int | bool | str | None
 Check = Callable[[str, Any], Value]
@@ -172,6 +173,22 @@ class MethodSetting:
         """The setting of an argument."""
         name, meaning, check = _ARGUMENTS[argument]
         return cls(name, argument, default, meaning, check)
+
+    @classmethod
+    def of_solver(cls, entry: Option) -> MethodSetting:
+        """The setting of a method that is an option of its solver, as solver_tolerance."""
+        argument = f"{NAME}.{entry.name}"
+
+        def check(name: str, value: Any) -> Value:
+            del name  # the option has words of its own
+            return entry.checked(value)
+
+        return cls(entry.setting, argument, entry.default, entry.meaning, check)
+
+    @property
+    def is_of_solver(self) -> bool:
+        """Return whether this is an option of the method's solver, stated only if changed."""
+        return self.argument.startswith(f"{NAME}.")
 
 
 def with_defaults(

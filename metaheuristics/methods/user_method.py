@@ -1,4 +1,4 @@
-"""A method of one's own: a function, an object that is asked and told, an algorithm of pymoo."""
+"""The user's own methods: functions, objects that are asked and told, algorithms of pymoo."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class AskTell(Protocol):
         ...
 
     def tell(self, candidates: ArrayLike, objectives: NDArray, violations: NDArray) -> None:
-        """What `ask` returned last, and its values as of `MoveFunction`."""
+        """Take the candidates that `ask` returned last, and their values as of `MoveFunction`."""
         ...
 
 
@@ -43,12 +43,12 @@ Method: TypeAlias = "str | Algorithm | AskTell | Callable[..., Any]"
 
 
 def is_of_pymoo(method: object) -> bool:
-    """Whether a method is one of pymoo's algorithms."""
+    """Return whether a method is one of pymoo's algorithms."""
     return hasattr(method, "infill")
 
 
 def method_name(method: Method) -> str:
-    """What a method is called."""
+    """Return the name of a method."""
     if isinstance(method, str):
         return method
     return getattr(method, "__name__", type(method).__name__)
@@ -117,7 +117,7 @@ def _refuse_unused(outcome: object, function: RecordedFunction) -> None:
 
 
 def digest_of(method: Method) -> str:
-    """A digest of one's own method, by which runs of an older one are known; empty of quietarm's.
+    """Digest a user's own method, to recognise runs of an older one; empty for quietarm's.
 
     Of a function its code, defaults and what it encloses, not what it calls; of an object all that
     it holds, and where it is asked and told the code of its class. Of a name that of its class.

@@ -1,4 +1,4 @@
-"""What a reference front says of its problem: where it is not convex, what is active."""
+"""Facts about a problem from its reference front: where it is not convex, what is active."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from quietarm.ocp import Front
 
 @dataclass(frozen=True)
 class Card:
-    """What a search for a front has to cope with.
+    """The properties of a front that make it hard to search.
 
     Attributes
     ----------
@@ -75,6 +75,6 @@ def _hull(points: np.ndarray) -> list[int]:
 
 
 def _depth(points: np.ndarray) -> float:
-    """How far points rise above the line between the first and the last of them."""
+    """Return how far points rise above the line between the first and the last of them."""
     line = np.interp(points[:, 0], points[[0, -1], 0], points[[0, -1], 1])
     return float((points[:, 1] - line).max())

@@ -110,7 +110,7 @@ class NamedProblem:
         )
 
     def __reduce__(self) -> Any:
-        """By its name where that says all."""
+        """Pickle by the name if that says everything."""
         if self.named:
             return problem_of, (self.name,)
         return type(self), tuple(vars(self).values())
@@ -163,7 +163,7 @@ class NamedProblem:
 
     @property
     def named(self) -> bool:
-        """Whether it is one of `PROBLEMS`."""
+        """Return whether this is one of `PROBLEMS`."""
         return self.reference_front is None and PROBLEMS.get(self.name) == self
 
     def recorded(
@@ -267,7 +267,7 @@ def problem_of(name: str) -> NamedProblem:
 
 
 def _task(plant: Plant, target: float, duration: float, start: float = 0.0) -> PointToPoint:
-    """With the residual window of the paper, and of the reference fronts."""
+    """Make a task with the residual window of the paper and of the reference fronts."""
     return PointToPoint(plant, target, duration, start, residual_window=EQ_11)
 
 

@@ -56,7 +56,7 @@ class PymooProblem(Problem):
         return _evenly(self._front, n_points)
 
     def pareto_set(self, n_points: int | None = None) -> Any:
-        """Their coefficients."""
+        """Coefficients of the points of the reference front."""
         return _evenly(self._set, n_points)
 
 

@@ -1,4 +1,4 @@
-"""Where bodies stand, in numbers: rotations and places in another body's frame."""
+"""Frames of bodies, in numbers: rotations and places in another body's frame."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Frame:
         return self.rotation @ point + self.origin
 
     def __matmul__(self, inner: Frame) -> Frame:
-        """Where a frame of this one stands in the other."""
+        """Return the place of a frame of this one in the other."""
         return Frame(self.rotation @ inner.rotation, self.point(inner.origin))
 
 
@@ -34,14 +34,14 @@ def rotation_of(roll: float, pitch: float, yaw: float) -> Array:
 
 
 def rotation_of_quaternion(quaternion: Array) -> Array:
-    """By x, y, z, w of a quaternion of any length but 0, as a URDF's quat_xyzw."""
+    """Return the rotation by a quaternion x, y, z, w of any length but 0."""
     x, y, z, w = quaternion / np.linalg.norm(quaternion)
     skew = skew_of(np.array([x, y, z]))
     return np.eye(3) + 2 * w * skew + 2 * skew @ skew
 
 
 def rotation_about(axis: Array, angle: float) -> Array:
-    """By an angle [rad] about a unit vector: Rodrigues' formula."""
+    """Return the rotation by an angle [rad] about a unit vector, by Rodrigues' formula."""
     skew = skew_of(axis)
     return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
 

@@ -33,6 +33,7 @@ from quietarm.models.plant import Plant, content, parameter
 from quietarm.models.robot.checked_robot import CheckedRobot
 from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
 from quietarm.models.robot.dynamics.robot_parts import Limits
+from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
 from quietarm.models.robot.on_path.path_tables import (
@@ -167,7 +168,7 @@ class Robot(CheckedRobot):
 
     @cached_property
     def notes(self) -> tuple[Note, ...]:
-        """What its files leave open, have wrong or have passed over, in one line each."""
+        """Notes on the robot, one line each, about gaps, errors and unused entries of its files."""
         return (*self.remarks, *notes_of(self))
 
     @cached_property
@@ -273,7 +274,7 @@ class RobotOnPath(Plant):
 
     @property
     def modes(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """How many modal amplitudes it has."""
+        """Number of modal amplitudes of the robot on its path."""
         return len(modes_on(self.robot, self.path))
 
     def _check_rotors(self) -> None:
@@ -288,7 +289,7 @@ class RobotOnPath(Plant):
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What the robot's files leave open or have wrong."""
+        """Notes on the robot, one line each, about gaps, errors and unused entries of its files."""
         return self.robot.notes
 
     @property
@@ -321,7 +322,7 @@ class RobotOnPath(Plant):
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """Of the driven joints."""
+        """Names of the driven joints."""
         return self.robot.joints
 
     @property
@@ -467,7 +468,7 @@ class RobotOnPath(Plant):
         return stick_figure_of(self.robot, self.path).bodies(angle, tips)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
-        """Their rates [m/s]."""
+        """Speeds of the tips [m/s]."""
         of = self._coefficients(path, "tips")
         rows = of["rows"]
         slopes = of["slopes"]
@@ -504,7 +505,7 @@ class RobotOnPath(Plant):
 
     @property
     def _errors(self) -> dict[str, Expression]:
-        """By which multiples are not 1, of those that may be another."""
+        """Multiples that are not 1, of those that may be another number."""
         multiples = {name: getattr(self, name) for name in VARIED}
         return {
             name: value - 1

@@ -47,7 +47,7 @@ def read_robot(path: str | Path) -> dict[str, Any]:
 
 def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     def of_joints(read: ReadOfJoint) -> Read:
-        """What reads values by joint, of each in the units of its kind."""
+        """Return the reader of values by joint, each in the units of the joint's kind."""
         return lambda entry, what: _by_joint(entry, what, read, _sliding(document, folder))
 
     readers: dict[str, Read] = {
@@ -308,7 +308,7 @@ def _quantity(unit: str) -> Read:
 
 
 def _quantity_of(unit: Unit) -> ReadOfJoint:
-    """What reads a quantity of a joint, in the unit of its kind."""
+    """Return the reader of a joint's quantity in the unit of the joint's kind."""
     return lambda entry, what, kind: _number(entry, what, unit.of(kind))
 
 

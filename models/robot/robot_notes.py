@@ -1,4 +1,4 @@
-"""What a robot's URDF leaves open or has wrong, and what was taken in its place: one line each."""
+"""Notes about gaps and errors of a robot's URDF and what was taken instead, one line each."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def first_of(names: Sequence[str]) -> str:
 
 
 def _without_masses(robot: RobotParts) -> Iterator[Note]:
-    """Of a robot whose motors move no mass of the URDF."""
+    """Note that the motors of a robot move no mass of its URDF."""
     urdf = robot.description
     moved = set[str]()
     for joint in urdf.outwards():
@@ -89,7 +89,7 @@ def _millimetres(urdf: Urdf) -> Iterator[Note]:
 
 
 def _own_friction(robot: RobotParts) -> Iterator[Note]:
-    """Where the robot's friction stands in place of the URDF's."""
+    """Note joints in which the robot's friction stands in place of the URDF's."""
     joints = robot.description.joints
     for entry, of_urdf, unit, unit_of_sliding in (
         ("friction", "damping", "N m s/rad", "N s/m"),

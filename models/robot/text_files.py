@@ -30,7 +30,7 @@ def read_text(path: str | Path, what: str) -> str:
 
 
 def read_yaml(path: str | Path, what: str) -> object:
-    """What a file in YAML holds; nothing in it is run."""
+    """Read the content of a YAML file; nothing in it is run."""
     text = read_text(path, what)
     try:
         from quietarm.models.robot.yaml_text import parse_yaml

@@ -40,7 +40,7 @@ _SCALARS = {
 
 
 def parse_yaml(text: str) -> object:
-    """What a text in YAML holds, of one document; ValueError where it is none, or out of bounds."""
+    """Parse a YAML text of one document; ValueError if it is none, or out of bounds."""
     if len(text.encode()) > MOST_BYTES:
         raise ValueError(f"has over {MOST_BYTES} bytes; give a smaller part, or a csv")
     loader = _loader_class()(text)
@@ -69,7 +69,7 @@ def _documents(loader: Any) -> Iterator[object]:
 
 
 def _words_of(error: yaml.YAMLError) -> str:
-    """What is wrong and where, without what stands there."""
+    """Say what is wrong and where, without quoting the text there."""
     problem = clipped(str(getattr(error, "problem", None) or "it cannot be read"))
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     return problem if mark is None else f"{problem} in line {mark.line + 1}"
@@ -88,7 +88,7 @@ def _check_depth(text: str) -> None:
 
 
 def _check_entries(node: yaml.Node, counted: dict[int, int]) -> int:
-    """How many values a node has, an alias counted wherever it stands; names come once."""
+    """Count the values of a node, an alias wherever it stands; refuse names that come twice."""
     if isinstance(node, yaml.ScalarNode):
         return 1
     if id(node) not in counted:
@@ -139,7 +139,7 @@ def _loader_class() -> Any:
 
 
 def _scalar_of(kind: str, make: Any) -> Any:
-    """What makes a value of a scalar, also of one that a tag calls so and that is none."""
+    """Return the constructor of a scalar, which also checks one that a tag declares."""
     form = re.compile(rf"(?:{_SCALARS[kind][0]})\Z")
 
     def construct(loader: Any, node: yaml.ScalarNode) -> object:

@@ -30,10 +30,13 @@ from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Record, Verification, number_of_starts
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
+from quietarm.ocp.solvers.choice import as_part
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
 
+FIRST_PLAN = "first_plan"
+"""What a record calls the solver of the plan that is one of the starts."""
 FIRST_INTERVALS = 80
 MOST_FIRST_INTERVALS = 1500
 MOST_INTERVALS = 6000
@@ -108,7 +111,7 @@ class Floor(MotionAnswer):
 
     @property
     def smooth(self) -> bool:
-        """Whether the acceleration is continuous."""
+        """Return whether the acceleration is continuous."""
         return bool(np.any(self.free.jerk))
 
     @property
@@ -118,7 +121,7 @@ class Floor(MotionAnswer):
 
     @property
     def settled(self) -> bool:
-        """Whether this is within the tolerance; otherwise the refinement ended early."""
+        """Return whether the last grids agree within the tolerance; else refinement ended early."""
         return abs(self.change) <= self.tolerance * self.levels[-1].energy
 
     @property
@@ -149,7 +152,7 @@ class Floor(MotionAnswer):
         return self.change * ratio / (1 - ratio) + missed
 
     def agreeing(self, share: float = 0.005) -> int:
-        """How many starts ended within a share of the best of them."""
+        """Number of starts that ended within a share of the best of them."""
         return sum(energy <= min(self.starts) * (1 + share) for energy in self.starts)
 
     @cached_property
@@ -216,6 +219,7 @@ def energy_floor(
     levels = [_cheapest(solved), _cheapest(improved)]
     _refine(program, levels, tolerance)
     solution, candidate = _certify_least(program, levels)
+    first_plan = as_part(FIRST_PLAN, solver.stated) if starts > 1 else {}
     method = f"ipopt, free {'jerk' if smooth else 'acceleration'}"
     floor = Floor(
         task=task,
@@ -225,15 +229,14 @@ def energy_floor(
         status=solution.status,
         solver_energy=solution.energy,
         tolerance=tolerance,
-        record=_record(method, starts, seed, solver, time.perf_counter() - began),
+        record=Record(
+            method,
+            {"starts": starts, **program.solver.stated, **first_plan},
+            seed=seed,
+            seconds=time.perf_counter() - began,
+        ),
     )
     return floor.with_candidate(candidate)
-
-
-def _record(method: str, starts: int, seed: int, solver: Solver, seconds: float) -> Record:
-    """What found a floor; of its solver what is not the default."""
-    options = {} if solver.stated == Sqp().stated else solver.stated
-    return Record(method, {"starts": starts, **options}, None, seed, seconds=seconds)
 
 
 def _cheapest(solutions: Iterable[FreeSolution]) -> FreeSolution:

@@ -111,7 +111,7 @@ def _interval(
 
 @dataclass(frozen=True)
 class FreeSolution:
-    """What one run of the solver gives, in SI units and by its own discretisation."""
+    """The result of one run of the solver, in SI units and by its own discretisation."""
 
     free: FreeMotion
     energy: float
@@ -143,7 +143,8 @@ class FloorProgram:
         self.task = task
         self.smooth = smooth
         self._limits = task.limits
-        self._ipopt = solver.as_kind(Ipopt)
+        self.solver = solver.as_kind(Ipopt)
+        """What solves it, with the options of the solver that was given."""
         self._states = 2 + smooth + 2 * task.plant.modes
         joints = len(task.plant.joint_names)
         self._parts = NODES * joints if task.energy.absolute else 0
@@ -169,7 +170,7 @@ class FloorProgram:
         ]
 
     def _compile(self, steps: int, warm: bool) -> tuple[Compiled, Array]:
-        """What `_build` gives, guarded."""
+        """Build the solver for a number of steps, guarded, and the upper bounds of its unknowns."""
         solver, upper = Compiled.guard(lambda: self._build(steps, warm))
         return Compiled(lambda: solver, silent=True), upper
 
@@ -220,9 +221,9 @@ class FloorProgram:
         options = _WARM if warm else COLD
         return {
             **options,
-            **self._ipopt.own_options,
-            "tol": self.larger_tolerance * self._ipopt.tolerance,
-            "max_iter": min(options["max_iter"], self._ipopt.iterations),
+            **self.solver.own_options,
+            "tol": self.larger_tolerance * self.solver.tolerance,
+            "max_iter": min(options["max_iter"], self.solver.iterations),
         }
 
     def along(self, path: JointPath, fractions: Array) -> FreeMotion:

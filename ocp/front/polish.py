@@ -14,9 +14,10 @@ from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT, Certificate, Tradeoff
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
-from quietarm.ocp.record import Setting, versions
+from quietarm.ocp.record import versions
+from quietarm.ocp.solvers.choice import as_part, without_part
 from quietarm.ocp.solvers.problem import Solution
-from quietarm.ocp.solvers.solver import NAME, Solver
+from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.told_progress import Progress, no_report
 
@@ -36,6 +37,10 @@ class Gain:
     def share(self) -> float:
         """Share of the energy that was saved."""
         return 1 - self.after / self.before
+
+
+POLISH = "polish"
+"""What a record calls the solver that polished, beside the one that found the front."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,11 @@ def polish_front(
     record = replace(
         front.record,
         method=f"{front.record.method}, polished",
-        settings={**front.record.settings, **_stated(solver), "steps": tradeoff.program.steps},
+        settings={
+            **without_part(POLISH, front.record.settings),
+            **as_part(POLISH, solver.stated),
+            "steps": tradeoff.program.steps,
+        },
         iterations=front.record.iterations + iterations,
         versions=versions(),
         seconds=front.record.seconds + time.perf_counter() - began,
@@ -152,11 +161,6 @@ def _within_peaks(
             failed = FailedPoint({RESIDUAL_LIMIT: point.residual}, str(outcome))
             yield [Certificate(point, 0), Certificate(failed, solution.iterations)]
         report(done, len(front.points))
-
-
-def _stated(solver: Solver) -> dict[str, Setting]:
-    """What a record says of the solver that polished, beside the one that found the front."""
-    return {name.replace(NAME, "polish", 1): value for name, value in solver.stated.items()}
 
 
 def _improve(tradeoff: Tradeoff, point: FrontPoint, solution: Solution) -> list[Certificate]:

@@ -19,6 +19,7 @@ from quietarm.ocp.planning.certify import OF_A_PLAN, Certified, certify
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import refuse_too_short
 from quietarm.ocp.record import Setting
+from quietarm.ocp.solvers.choice import stand_in_settings
 from quietarm.ocp.solvers.problem import LEAST_ENERGY, MOST_SOLVER_STEPS, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
@@ -35,10 +36,14 @@ AskedPlace = Mapping[str, float]
 
 
 class Certificate(NamedTuple):
-    """A point by the independent integrator, or why there is none; and the iterations it took."""
+    """A point by the independent integrator, or why there is none.
+
+    Beside it stand the iterations that it took, and what solved it, as a record states that.
+    """
 
     point: FrontPoint | FailedPoint
     iterations: int
+    solved_by: Mapping[str, Setting] = {}
 
 
 @dataclass(frozen=True)
@@ -208,7 +213,7 @@ class Tradeoff:
             motion = JudgedMotion.of_profile(self.task, profile, coefficients)
             point = point_of(motion, self.objectives)
         point = replace(point, shadow_prices=solution.shadow_prices)
-        return Certificate(point, solution.iterations)
+        return Certificate(point, solution.iterations, solution.solved_by)
 
     def to_front(
         self,
@@ -233,6 +238,7 @@ class Tradeoff:
             points=points,
             steps=self.program.steps,
             **settings,
+            **stand_in_settings(self.solver, [end.solved_by for end in ended]),
         )
         return Front(
             task=self.task,

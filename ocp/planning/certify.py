@@ -166,9 +166,10 @@ class _Row:
         self.tightened = tighten(self.tightened, figures, self.limits)
 
     def go_on_from(self, solution: Solution, problem: Program) -> None:
-        """Take another solution, whose iterations count as well."""
+        """Take another solution, whose iterations count as well; what found the first one stays."""
         iterations = self.solution.iterations + solution.iterations
-        self.solution = replace(solution, iterations=iterations)
+        found_by = self.solution.solved_by
+        self.solution = replace(solution, iterations=iterations, solved_by=found_by)
         self.problem = problem
 
     @property

@@ -19,7 +19,8 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.simulation.full_dynamics import FullFigures
-from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.choice import STAND_IN, only_part, without_part
+from quietarm.ocp.solvers.solver import NAME, Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import ModalState, PointToPoint
 
@@ -115,4 +116,7 @@ def _again(plan: Plan, figures: FullFigures, solver: Solver) -> Plan:
             f"by the whole equations {1e3 * figures.residual:.3g} mm remain, and no motion within "
             f"the limits corrects that ({error}); give a longer duration or wider limits"
         ) from None
-    return again.restated(settings=plan.record.settings)
+    settings = dict(plan.record.settings)
+    for part in (NAME, STAND_IN):  # of what corrected it, not of what found it
+        settings = without_part(part, settings) | only_part(part, again.record.settings)
+    return again.restated(settings=settings)

@@ -20,6 +20,7 @@ from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import Setting
 from quietarm.ocp.simulation.free_vibration import fastest_of_moves
 from quietarm.ocp.solvers.choice import stand_in
 from quietarm.ocp.solvers.problem import Program, Solution, first_steps, programs_of
@@ -51,6 +52,8 @@ class Moves:
         residual also if rest on arrival is required. Empty where there is no plan.
     by_cvodes : ndarray of bool, shape (moves,)
         Which values are by CVODES; the others are by finer steps, which CVODES confirmed.
+    solved_by : tuple of mapping
+        The solver of each with its options, as a record states them: IPOPT where it stood in.
     """
 
     tasks: tuple[PointToPoint, ...]
@@ -64,6 +67,7 @@ class Moves:
     iterations: NDArray[np.intp]
     shadow_prices: tuple[Mapping[str, float], ...]
     by_cvodes: NDArray[np.bool_]
+    solved_by: tuple[Mapping[str, Setting], ...]
 
 
 @takes(tasks=[PointToPoint], profile=JointProfile, solver=Solver)
@@ -287,6 +291,7 @@ class _MovesTable:
                 solution.shadow_prices if solution.status.solved else {} for solution in solutions
             ),
             by_cvodes=self._by_cvodes,
+            solved_by=tuple(solution.solved_by for solution in solutions),
         )
 
 

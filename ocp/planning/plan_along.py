@@ -31,7 +31,9 @@ from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
 from quietarm.ocp.rest import rest_of
 from quietarm.ocp.robustness import peaks_between
+from quietarm.ocp.solvers.choice import stand_in_settings
 from quietarm.ocp.solvers.problem import Program, Solution
+from quietarm.ocp.solvers.solver import NAME
 
 EXCESS = 0.05
 """Share of the limit by which the residual between scenarios may exceed it before more are added;
@@ -285,11 +287,15 @@ def _certified_plan(request: Request, solved: _Solved) -> Plan:
     candidate = certified.figures.candidate
     assert candidate is not None  # a single motion is judged by CVODES
     solution = certified.solution
+    found_by = solution.solved_by
     return Plan.of_candidate(
         candidate,
         status=solution.status,
         record=request.record(
-            request.solver.name, solution.iterations, time.perf_counter() - began
+            str(found_by.get(NAME, request.solver.name)),
+            solution.iterations,
+            time.perf_counter() - began,
+            **stand_in_settings(request.solver, [found_by]),
         ),
         steps=certified.steps,
         residual_limit=request.residual_limit,

@@ -1,4 +1,4 @@
-"""How a joint may move: what every profile is, and the profiles, one class a file.
+"""Ways in which a joint may move: the base of every profile, and the profiles, one class a file.
 
 May import no other room.
 """

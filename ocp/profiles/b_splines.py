@@ -64,5 +64,5 @@ def _blend(
 
 
 def _share(at: Expression, begin: float, end: float) -> Expression:
-    """How far it is from one knot to another; where these are one, no piece lies between them."""
+    """Return the share of the way between two knots; 0 if these are one."""
     return (at - begin) / (end - begin) if end > begin else 0.0

@@ -62,12 +62,12 @@ class FreeMotion:
 
     @property
     def steps(self) -> int:
-        """How many intervals the grid has."""
+        """Number of intervals of the grid."""
         return len(self.acceleration)
 
     @property
     def smooth(self) -> bool:
-        """Whether the motion has a jerk; else its acceleration is constant on every interval."""
+        """Return whether the motion has a jerk; else its acceleration jumps between intervals."""
         return bool(np.any(self.jerk))
 
     @property
@@ -88,7 +88,7 @@ class FreeMotion:
         return np.vstack([begins, self.acceleration, self.jerk, self.lengths])
 
     def split(self, parts: NDArray[np.int_]) -> FreeMotion:
-        """The same motion on a finer grid: interval k in `parts[k]` equal parts."""
+        """Return this motion on a finer grid: interval k in `parts[k]` equal parts."""
         old = np.repeat(np.arange(self.steps), parts)
         part = np.concatenate([np.arange(count) for count in parts]) / parts[old]
         into = part * self.lengths[old]

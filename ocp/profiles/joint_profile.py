@@ -62,21 +62,21 @@ class JointProfile(ABC):
     @property
     @abstractmethod
     def size(self) -> int:
-        """How many coefficients the profile has."""
+        """Number of coefficients of the profile."""
 
     @property
     def amount(self) -> str:
-        """How large the profile is, as 6 coefficients."""
+        """Size of the profile in words, such as 6 coefficients."""
         return f"{self.size} {self.term}{'s' if self.size != 1 else ''}"
 
     def steps_between_breaks(self, steps: int) -> int:
-        """The least between two of its `breaks`, of so many steps of the whole move."""
+        """Return how many steps of the move lie between its two nearest `breaks`."""
         del steps
         return self.steps_of_a_piece
 
     @property
     def label(self) -> str:
-        """What the profile is called in a message."""
+        """Name of the profile with its size, for messages."""
         return f"{self.name} of {self.amount}"
 
     def refuse_no_choice(self) -> None:
@@ -106,7 +106,7 @@ class JointProfile(ABC):
         return -largest, largest
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Where the gradient's random starts lie, as `box`, but finite."""
+        """Return the box of the gradient's random starts, like `box` but finite."""
         return self.box(self.unbounded_spread if bound is None else bound)
 
     @property

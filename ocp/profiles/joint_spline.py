@@ -89,7 +89,7 @@ class JointSpline(JointProfile):
 
     @property
     def places(self) -> NDArray[np.float64]:
-        """Where the B-splines of the coefficients act, as fractions of the duration: (size,)."""
+        """Times at which the coefficients' B-splines act, as shares of the duration: (size,)."""
         ends = np.zeros(self.degree), np.ones(self.degree)
         clamped = np.concatenate([ends[0], [0.0, *self.knots, 1.0], ends[1]])
         share = np.full(self.degree, 1 / self.degree)
@@ -117,7 +117,7 @@ class JointSpline(JointProfile):
     def _spline(
         self, coefficients: Sequence[Any], fraction: Expression, derivatives: int
     ) -> list[Expression]:
-        """The spline and so many derivatives."""
+        """Return the spline and a number of its derivatives."""
         turn = 2 * math.pi
         plain = [at - math.sin(turn * at) / turn for at in self.places.tolist()]
         free = [height + a for height, a in zip(plain, coefficients)]

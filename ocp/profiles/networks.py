@@ -18,7 +18,7 @@ from quietarm.ocp.profiles.term_profile import TermProfile
 
 
 class Range(NamedTuple):
-    """Of one kind of the units' parameters; of shape (units,), or one number for all of them."""
+    """The range of one of the units' parameters: of shape (units,), or one number for all."""
 
     first: NDArray[np.float64] | float
     spread: NDArray[np.float64] | float
@@ -53,7 +53,7 @@ class CycloidOfUnits(TermProfile, Cycloid):
     terms: int = 5
 
     def checked(self, coefficients: ArrayLike, duration: float | None = None) -> tuple[float, ...]:
-        """As every profile's; ValueError, too, where a unit is sharper than `sharpest`."""
+        """Check coefficients, and refuse a unit that is sharper than `sharpest`."""
         values = super().checked(coefficients, duration)
         if (largest := max(map(abs, values[1 + 2 * self.terms :]))) > self.sharpest:
             raise ValueError(
@@ -65,7 +65,7 @@ class CycloidOfUnits(TermProfile, Cycloid):
     @property
     @abstractmethod
     def ranges(self) -> tuple[Range, Range]:
-        """Where the units' own parameters x and y may be."""
+        """Ranges of the units' own parameters x and y."""
 
     @staticmethod
     @abstractmethod

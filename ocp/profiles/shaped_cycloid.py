@@ -208,12 +208,12 @@ class ShapedCycloid(JointProfile):
 
     @property
     def length(self) -> float:
-        """From the shaper's first impulse to its last [s]."""
+        """Time from the shaper's first impulse to its last [s]."""
         return self.impulses.times[-1]
 
     @property
     def size(self) -> int:
-        """None, as the shaper is known from the plant."""
+        """Number of coefficients: none, as the shaper is known from the plant."""
         return 0
 
     @property
@@ -228,13 +228,13 @@ class ShapedCycloid(JointProfile):
         return self.length / (1 - LEAST_SHARE)
 
     def breaks(self, duration: float) -> tuple[float, ...]:
-        """Where a cycloid begins or ends."""
+        """Fractions of the duration at which a cycloid begins or ends."""
         begins = self.impulses.times
         ends = (begin + duration - self.length for begin in begins)
         return tuple(sorted({at / duration for at in (*begins, *ends) if 0 < at < duration}))
 
     def at_duration(self, duration: Expression) -> Self:
-        """The same shaper in a move that takes so long [s]."""
+        """Return this shaper in a move of another duration [s]."""
         timed = copy(self)
         object.__setattr__(timed, "duration", duration)
         return timed

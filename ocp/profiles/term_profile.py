@@ -45,7 +45,7 @@ class TermProfile(JointProfile):
 
     @property
     def amount(self) -> str:
-        """As 6 terms."""
+        """Size of the profile in words, such as 6 terms."""
         return f"{self.terms} {self.term}{'s' if self.terms != 1 else ''}"
 
     @classmethod
@@ -61,7 +61,7 @@ class TermProfile(JointProfile):
 
     @property
     def size(self) -> int:
-        """How many coefficients the profile has."""
+        """Number of coefficients of the profile."""
         return self.fixed_coefficients + self.coefficients_of_term * self.terms
 
 

@@ -1,4 +1,4 @@
-"""What a motion costs: fixed steps for the optimisers, CVODES for the figures that are reported.
+"""Simulate motions: fixed steps for the optimisers, CVODES for the figures that are reported.
 
 May import `profiles`. The fixed steps (`rollout`; of many candidates `evaluator`) and CVODES
 (`cvodes`) share the equations, the energy's quadrature and the residual, but no integrator.

@@ -65,7 +65,7 @@ def modal_system(plant: Plant, joint: JointMotion) -> ModalSystem:
 
 
 def _acting(plant: Plant, joint: JointMotion) -> list[list[bool]]:
-    """Whether mode j is in the equation of mode i at all: else there is no term to compute with."""
+    """Return whether mode j acts on mode i at all; where it does not, no term is computed."""
     modes = range(plant.modes)
     kind = _kind_of(plant)
     if isinstance(joint.angle, ca.DM):  # numbers tell by themselves
@@ -195,14 +195,14 @@ def collocate(system: ModalSystem, h: Expression, forced: bool = False) -> Step:
 
 
 def at_each_node(entry: Expression, h: Expression) -> list[Expression]:
-    """What stands side by side for the first, second and third nodes of steps of length h."""
+    """Split values that stand side by side for the three nodes of steps of length h."""
     if is_zero(entry):
         return [entry] * NODES
     return ca.horzsplit(ca.DM.zeros(h.shape[0], NODES * h.shape[1]) + entry, h.shape[1])
 
 
 def _held(h: Expression, k: Expression, d: Expression, once: float, twice: float) -> Expression:
-    """What W'' at a node adds to the spring and damper forces at another."""
+    """Return the share of W'' at a node in the spring and damper forces at another."""
     return 0.0 if is_zero(k) else h * (once * d + twice * h * k)
 
 

@@ -38,7 +38,7 @@ time to build it, and grows with the square of the steps."""
 
 @dataclass(frozen=True)
 class RowValues:
-    """What rows cost: F2 [J], state on arrival, limited quantities at the nodes.
+    """Simulated values of candidates: F2 [J], state on arrival, limited quantities at the nodes.
 
     Shapes are (rows,), (rows, 2 * modes) and (rows, values); `places_of` a simulation tells which
     value is of which quantity.
@@ -123,7 +123,7 @@ class Evaluator:
 
     @property
     def steps(self) -> int:
-        """How many steps were asked for."""
+        """Number of steps that was asked for."""
         return self.simulation.steps
 
     @cached_property
@@ -153,7 +153,7 @@ class Evaluator:
 
     @cached_property
     def tip_rows(self) -> list[Array]:
-        """Of each scenario, the rows that give the residual of a state on arrival, to 5e-5."""
+        """Rows that give the residual of a state on arrival, to 5e-5, for each scenario."""
         return [vibration.rows for vibration in self.vibrations]
 
     @interruptible
@@ -204,7 +204,7 @@ class Evaluator:
 
     @on_one_thread
     def of_values(self, values: RowValues, offset: ArrayLike = 0.0) -> Evaluation:
-        """What one candidate's values in the task's scenarios mean, a row a scenario.
+        """Evaluate one candidate's values in the task's scenarios, a row a scenario.
 
         The offset is added to the states on arrival [m, m/s].
         """
@@ -300,7 +300,7 @@ class Evaluation:
 
     @cached_property
     def limited_peaks(self) -> Mapping[str, Array]:
-        """The same without the residual."""
+        """Peaks of the limited quantities, without the residual."""
         peaks: dict[str, Array] = {}
         for limit in self.evaluator.tasks[0].limits:
             sides = [entry.sides for entry in _limits_of(self.evaluator.tasks, limit.name)]
@@ -353,7 +353,7 @@ def _compiled_values(simulation: Simulation) -> RowFunction:
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:
-    """The values of so many candidates.
+    """Build the function that gives the values of a number of candidates.
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 class _Sampling(NamedTuple):
-    """How a window is sampled: `samples` in a stride, strides in `columns`, these in `rounds`.
+    """Sampling of a window: `samples` in a stride, strides in `columns`, these in `rounds`.
 
     The `rows` give displacements and scaled rates at the samples of a stride from the state at its
     beginning; `stride` and `following` move that on by a stride, and by all columns.
@@ -122,7 +122,10 @@ class FreeVibration:
 
     @on_one_thread
     def rows_every(self, radians: float) -> Array:
-        """The same at another distance [rad of the fastest mode]; the miss is its square by 8."""
+        """Return the rows at samples of another distance [rad of the fastest mode].
+
+        A peak between two samples is missed by an eighth of the distance's square, as a share.
+        """
         samples = max(2, math.ceil(self._radians / radians) + 1)  # both ends at least
         step = exponential(self.matrix, self.window / (samples - 1), self._most)
         rows = extreme_rows(powers(self.tips, step, samples), len(self.tips))
@@ -215,7 +218,7 @@ def fastest_along(plant: Plant, start: float, target: float) -> float:
 
 
 def fastest_of_moves(plant: Plant, starts: ArrayLike, targets: ArrayLike) -> Array:
-    """The same for each of many moves."""
+    """Return the fastest natural frequency of a plant along each of many moves [rad/s]."""
     ends = np.asarray(starts, dtype=float), np.asarray(targets, dtype=float)
     angles = np.linspace(*ends, 49)
     fastest = FreeVibration(plant, angles.ravel()).fastest
@@ -248,7 +251,7 @@ def powers(rows: Array, step: Array, count: int) -> Array:
 
 
 def _stacked(entries: Sequence[Sequence[Expression]], count: int) -> Array:
-    """Entries that are numbers or columns, as so many matrices."""
+    """Stack entries that are numbers or columns into matrices."""
     columns = [
         [np.broadcast_to(np.array(ca.DM(entry)).ravel(), count) for entry in row] for row in entries
     ]
@@ -307,14 +310,14 @@ def _hull(points: Array) -> list[int]:
 
 
 def _turns_left(before: Array, at: Array, after: Array) -> bool:
-    """Whether the way through three points of a plane turns to the left in the second."""
+    """Return whether the way through three points of a plane turns to the left at the second."""
     u, v = at - before
     x, y = after - at
     return bool(u * y - v * x > 0)
 
 
 def extreme_rows(rows: Array, tips: int) -> Array:
-    """Those rows of displacements, tip after tip at each time, that are the largest of some state.
+    """Select the rows of displacements, tip after tip, that are largest for some state.
 
     A tip that one mode moves turns in a plane, and dies away: corners of half a turn suffice.
     """

@@ -180,7 +180,7 @@ def _sample(torques: Array, speeds: Array) -> Sample:
 
 
 def _tips(equations: FullEquations, states: int) -> ca.Function:
-    """(place, angles of the springs) -> where the tip is, a column a state, of the joints at rest."""
+    """(place, angles of the springs) -> the tip, a column a state, with the joints at rest."""
     place = ca.SX.sym("place")
     angles = ca.SX.sym("angles", equations.springs)
     origin = equations.tip(JointMotion(place, 0.0, 0.0), angles)

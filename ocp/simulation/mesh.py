@@ -1,4 +1,4 @@
-"""Where the steps of a move begin and end, and how many it takes."""
+"""The steps of a move: where each begins and ends, and how many there are."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Mesh:
 
     @cached_property
     def boundaries(self) -> NDArray[np.float64]:
-        """Where the steps begin and end, shape (steps + 1,)."""
+        """Begins and ends of the steps, shape (steps + 1,)."""
         if not self.breaks:
             even = np.arange(self.steps + 1) / self.steps
             return even / 2 + (1 - np.cos(np.pi * even)) / 4
@@ -51,7 +51,7 @@ class Mesh:
 
     @property
     def lengths(self) -> NDArray[np.float64]:
-        """How long the steps are, shape (steps,)."""
+        """Lengths of the steps, shape (steps,)."""
         return np.diff(self.boundaries)
 
     @property

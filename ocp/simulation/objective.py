@@ -90,7 +90,7 @@ def _parted_energy(
 
 @lru_cache(maxsize=4)  # of a long recording they take 160 bytes a step
 def beyond_quadratic(steps: int) -> tuple[ca.DM, ca.DM]:
-    """What neighbouring steps say of the power on a step.
+    """Return the correction of a step's power that the neighbouring steps give.
 
     The quartic through five nodes in a row, the step's own three in the middle, is the quadratic
     through these plus (x - node 1)(x - node 2)(x - node 3) (cubic + quartic (x - 1/2)).

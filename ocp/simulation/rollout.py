@@ -81,7 +81,7 @@ class SymbolicRollout:
 
 
 class Simulation(NamedTuple):
-    """What simulations of many candidates have in common.
+    """The common part of simulations of many candidates.
 
     Errors are what may differ from the plant in a candidate, as by `perturb_plant`; breaks are the
     fractions of the move at which the motion is not smooth.
@@ -97,7 +97,7 @@ class Simulation(NamedTuple):
 
     @property
     def mesh(self) -> Mesh:
-        """Where the steps begin and end."""
+        """The mesh: where the steps begin and end."""
         return mesh_of(self.profile, self.steps, self.breaks)
 
     def rollout(
@@ -107,7 +107,7 @@ class Simulation(NamedTuple):
         errors: Sequence[Expression],
         candidates: int = 1,
     ) -> SymbolicRollout:
-        """As of `symbolic_rollout`, of the `row` of a task and relative errors of its plant."""
+        """Simulate in symbols, for the `row` of a task and relative errors of its plant."""
         return symbolic_rollout(
             perturb_plant(self.plant, dict(zip(self.errors, errors))),
             self.profile,
@@ -124,7 +124,7 @@ class Simulation(NamedTuple):
 
 @lru_cache(maxsize=128)
 def places_of(simulation: Simulation) -> Mapping[str, slice]:
-    """Where the values of each quantity stand among all of a candidate."""
+    """Places of the values of each quantity among all of a candidate."""
     places: dict[str, slice] = {}
     first = 0
     for quantity in simulation.quantities:

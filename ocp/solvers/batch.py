@@ -45,13 +45,13 @@ class MotionMultipliers:
         return type(self)(**{name: np.concatenate(part) for name, part in vars(self).items()})
 
     def of_first(self) -> Self:
-        """Those of the first scenario, of arrays by candidate and scenario."""
+        """Return the arrays of the first scenario, of those by candidate and scenario."""
         return type(self)(**{name: part[:, 0] for name, part in vars(self).items()})
 
 
 @dataclass(frozen=True)
 class Derivatives(RowValues):
-    """The same with derivatives by the coefficients, along a last axis of each.
+    """Values of motions with derivatives by the coefficients, along a last axis of each array.
 
     The Hessian, (rows, coefficients, coefficients), is of the sum that the multipliers weigh. The
     energy's gradient has the zeros of the power fixed, which is exact.
@@ -98,17 +98,17 @@ class Batch:
 
     @cached_property
     def _steps(self) -> int:
-        """How many there are: some more than asked for where the motion breaks."""
+        """Number of steps, which is larger than asked for if the motion breaks."""
         return len(self.simulation.mesh.lengths)
 
     @cached_property
     def places(self) -> Mapping[str, slice]:
-        """Where the values of each limited quantity stand among all."""
+        """Places of the values of each limited quantity among all."""
         return places_of(self.simulation)
 
     @cached_property
     def limited(self) -> int:
-        """How many values of limited quantities there are."""
+        """Number of values of limited quantities."""
         return max((place.stop for place in self.places.values()), default=0)
 
     @on_one_thread
@@ -265,7 +265,7 @@ class Batch:
             self._derivatives.prepare(candidates * scenarios)
 
     def _splits(self, scenarios: int) -> bool:
-        """Whether of the scenarios but the first the arrivals alone count."""
+        """Return whether only the arrivals of the scenarios beyond the first count."""
         return scenarios > 1 and not any(
             quantity.in_scenarios for quantity in self.simulation.quantities
         )
@@ -287,11 +287,11 @@ class Batch:
         return hessian
 
     def _unpack(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
-        """What `Derivatives` holds; a column of the outputs is a candidate."""
+        """Split outputs into the entries of `Derivatives`; a column is a candidate."""
         return (*self._unpack_first(outputs, rows)[:-1], self._hessian(outputs[6:], rows))
 
     def _unpack_first(self, outputs: list[Array], rows: int) -> tuple[Array, ...]:
-        """The same without second derivatives: they are those of no sum."""
+        """Split outputs as `_unpack` does, without second derivatives, which belong to a sum."""
         size = self.simulation.profile.size
         energy, arrival, limited, gradient, arrival_jacobian = copy_rows(outputs[:5], rows)
         limited_jacobian = self._by_coefficient(outputs[5], rows)
@@ -306,7 +306,7 @@ class Batch:
         )
 
     def _by_coefficient(self, output: Array, rows: int) -> Array:
-        """From (value, coefficient, step; candidate) to (candidate; coefficient; value, step)."""
+        """Turn (value, coefficient, step; candidate) into (candidate; coefficient; value, step)."""
         size = self.simulation.profile.size
         by_axis = output.reshape(-1, size, self._steps, output.shape[1])[..., :rows]
         return by_axis.transpose(3, 1, 0, 2).reshape(rows, size, -1)

@@ -316,7 +316,7 @@ class _Differentiated:
         return list(factors), list(turned)
 
     def path_hessian(self, of_outputs: list[ca.MX], of_forcing: list[ca.MX]) -> list[ca.MX]:
-        """What the path's own second derivatives add to the Hessian."""
+        """Terms of the Hessian from the path's own second derivatives."""
         if self.path.linear:
             return []
         count = self.path.count
@@ -361,7 +361,7 @@ class _Differentiated:
         return self.function("derivatives", self.inputs, blocks)
 
     def compile_arrivals(self) -> ca.Function:
-        """What there is without outputs as a function."""
+        """Compile the function of arrivals and their derivatives, without outputs."""
         of_forcing = self.forcing_multipliers([])
         blocks = [
             [self.arrival],
@@ -384,12 +384,12 @@ class _Differentiated:
 
 
 def _swap(entry: ca.MX, groups: int) -> ca.MX:
-    """From groups of columns to groups of the first in each, of the second and so on."""
+    """Regroup columns: the first of each group, then the second of each, and so on."""
     return entry[:, np.arange(entry.shape[1]).reshape(groups, -1).T.ravel().tolist()]
 
 
 def _reverse(by_step: Any) -> Any:
-    """From the last step to the first."""
+    """Turn the steps round, from the last to the first."""
     several = isinstance(by_step, ca.MX) and by_step.shape[1] > 1
     return by_step[:, ::-1] if several else by_step
 

@@ -72,7 +72,7 @@ class RowPrograms(Protocol):
 
 
 class End(Enum):
-    """How a row ended."""
+    """The ways in which a row can end."""
 
     SOLVED = "a local optimum"
     CREEPING = "feasible, and hardly better for many iterations"
@@ -83,7 +83,7 @@ class End(Enum):
 
 
 class Course(NamedTuple):
-    """How rows are led to their minima.
+    """Settings by which rows are led to their minima.
 
     By the options of a solver: a row is solved where the model promises less than its tolerance, as
     a share of f; it has at most so many iterations, and with a log each is a line. The objective is
@@ -98,7 +98,7 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Ended:
-    """Where the rows ended: points (rows, n), multipliers, why, after how many iterations (rows,).
+    """The ends of the rows: points (rows, n), multipliers, reasons, numbers of iterations (rows,).
 
     The violation (rows,) is the largest distance from c = 0 and from the bounds of v.
     """
@@ -239,7 +239,7 @@ class _Descent:
         return self.widths[self.stage[rows]]
 
     def log_line(self, number: int) -> str:
-        """Of the row with the least objective, scaled; and how many are going."""
+        """Describe the row with the least objective, scaled, and how many rows are going."""
         row = self.going[np.argmin(self.f[self.going])]
         return (
             f"{number:4}{len(self.going):8}{self.f[row]:12.6f}{self.violation[row]:11.1e}"
@@ -312,7 +312,7 @@ class _Descent:
         promised: Array,
         trial: Model,
     ) -> Flags:
-        """Whether the rows at these places of the model accept their steps d."""
+        """Return which rows at these places of the model accept their steps d."""
         rows = self.going[places]
         model = self.model.take(places)
         before = self.violation[rows]

@@ -18,7 +18,7 @@ sides of its limit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
 
@@ -79,7 +79,7 @@ class Ipopt(Solver):
 
     @property
     def own_options(self) -> dict[str, str | int | float]:
-        """What IPOPT is told of these options, by its own names."""
+        """These options by IPOPT's own names."""
         return {
             "tol": self.tolerance,
             "max_iter": self.iterations,
@@ -98,7 +98,8 @@ class Ipopt(Solver):
         """Solve each problem from its start; see `Solver.solve`. Groups are not used."""
         del groups
         pairs = zip(problems, starts)
-        return [_Numbers(problem, warm, self).solve(start) for problem, start in pairs]
+        solutions = [_Numbers(problem, warm, self).solve(start) for problem, start in pairs]
+        return [replace(solution, solved_by=self.stated) for solution in solutions]
 
 
 class _Program(NamedTuple):
@@ -114,7 +115,7 @@ class _Program(NamedTuple):
 
 
 class _Form(NamedTuple):
-    """What two problems of one task along one profile have in common if one program serves both.
+    """The properties of a task along a profile by which one program serves several problems.
 
     Rows of tip displacements are those of each scenario.
     """
@@ -139,7 +140,7 @@ class _Form(NamedTuple):
 
 @lru_cache(maxsize=16)
 def compile_program(simulation: Simulation, form: _Form, solver: Ipopt, warm: bool) -> _Program:
-    """The program of a form, as of `_build_program`."""
+    """Compile the program of a form by `_build_program`."""
     return Compiled.guard(lambda: _build_program(simulation, form, solver, warm))
 
 
@@ -319,7 +320,7 @@ class _Numbers:
         return lower, upper
 
     def prices(self, multipliers: Array) -> dict[str, float]:
-        """What the least energy falls by if a limit is widened [J by its unit]."""
+        """Return the fall of the least energy per unit of each widened limit [J by its unit]."""
         counts = self.program.counts
         problem = self.problem
         parts = np.split(multipliers, np.cumsum(list(counts.values()))[:-1])

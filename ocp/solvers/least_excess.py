@@ -1,4 +1,4 @@
-"""How near a motion can come to its limits: linear programs, one after another.
+"""Find how near a motion can come to its limits, by one linear program after another.
 
 Given its duration, a motion keeps its limits if their least excess is none. The excess is the share
 by which all limits are widened alike; what has to hold exactly is the state on arrival, or the
@@ -96,7 +96,7 @@ class _Linearised:
         self.lower = np.concatenate(lowers)
 
     def _arrival_rows(self, problem: Program, motions: Derivatives) -> None:
-        """What has to be 0, or within 1: scaled states on arrival, or displacements after it."""
+        """Store the rows of the arrival: scaled states to be 0, or displacements within 1."""
         missed = motions.arrival - problem.wanted + problem.offset
         if problem.at_rest:
             scale = problem.arrival_scale
@@ -117,7 +117,7 @@ class _Linearised:
 
     @property
     def missed(self) -> float:
-        """What it misses on arrival, beyond what is allowed."""
+        """Largest miss on arrival beyond what is allowed."""
         return float(np.abs(self.arrival).max(initial=0.0)) - self.allowed
 
     def step_of_least_excess(self, reach: float) -> Array | None:
@@ -200,7 +200,7 @@ class _Rows(NamedTuple):
     give: Array
 
     def and_(self, more: _Rows) -> _Rows:
-        """These and others."""
+        """Join these rows and others."""
         return _Rows(*map(np.concatenate, zip(self, more)))
 
     def excess_at(self, step: Array) -> Array:
@@ -209,7 +209,7 @@ class _Rows(NamedTuple):
 
 
 def _peaks(values: Array, above: float) -> NDArray[np.bool_]:
-    """Where values above a level are no smaller than their neighbours."""
+    """Return the places of values above a level that are no smaller than their neighbours."""
     before = np.append(-np.inf, values[:-1])
     after = np.append(values[1:], -np.inf)
     return (values > above) & (values >= before) & (values >= after)

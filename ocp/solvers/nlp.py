@@ -34,7 +34,7 @@ OPTIONS: dict[str, str | int | float] = {
 
 
 class Stop(NamedTuple):
-    """How a run of IPOPT ended: where, multipliers of constraints, its own status, iterations."""
+    """The end of a run of IPOPT: unknowns, multipliers, its own status, iterations."""
 
     unknowns: NDArray[np.float64]
     multipliers: NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""What happens at one time with its derivatives: the joint's path, and the plant at a Gauss node.
+"""Values and derivatives at one time: the joint's path, and the plant at a Gauss node.
 
 Both are nonlinear, and both belong to a single time: the modes are linear in all that went before.
 So expressions are computed entry by entry over arrays (rows, nodes), as are their derivatives.
@@ -165,7 +165,7 @@ class Path:
         return self._profile.motion_of((value, rate, bend), *move)
 
     def motion_with_jerk(self, y: Sequence[ca.MX], move: Sequence[ca.MX]) -> JointMotion:
-        """The same with the jerk where that is asked for; y are symbols."""
+        """Return the joint's motion, with the jerk if that is asked for; y are symbols."""
         joint = self.motion(y, move)
         if not self._jerk:
             return joint

@@ -1,4 +1,4 @@
-"""What a solver is given, a task on its steps with what is minimised and limited; what it gives."""
+"""The program that a solver is given, a task on its steps, and its solution."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.record import Setting
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator, RowValues
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.solvers.batch import Batch, Derivatives, batch_of
@@ -78,11 +79,11 @@ class Program:
 
     @classmethod
     def of(cls, task: PointToPoint, profile: JointProfile, steps: int | None = None) -> Self:
-        """On so many steps, or on as many as the task and the profile take to begin with."""
+        """Make the program on a number of steps, by default the usual one of task and profile."""
         return cls(task, profile, steps or first_steps(task, profile))
 
     def asking(self, **changes: Any) -> Self:
-        """The same task on the same steps, with other limits, bound, objective or offset."""
+        """Return this program with other limits, bound, objective or offset, on the same steps."""
         return replace(self, **changes)
 
     def within(
@@ -96,7 +97,7 @@ class Program:
         return self.asking(limits=limits, bound=bound, minimise=minimise, offset=0.0)
 
     def on_steps_of(self, other: Program) -> Self:
-        """What this program asks for, of another's task on its steps."""
+        """Return this program's question about the task of another program, on that one's steps."""
         return replace(
             self,
             task=other.task,
@@ -112,7 +113,7 @@ class Program:
 
     @_OfSteps
     def batch(self) -> Batch:
-        """Their derivatives, in any scenario."""
+        """The motions with derivatives that this program is evaluated by, in any scenario."""
         return batch_of(self.evaluator.simulation)
 
     @_OfSteps
@@ -133,7 +134,7 @@ class Program:
 
     @property
     def tip_rows(self) -> list[Array]:
-        """For each scenario, rows that give tip displacements from the state on arrival."""
+        """Rows that give tip displacements from the state on arrival, for each scenario."""
         return self.evaluator.tip_rows
 
     @_OfSteps
@@ -169,7 +170,7 @@ class Program:
         return evaluate([self], coefficients[None])[0]
 
     def measure(self, values: RowValues, offset: Array | float = 0.0) -> Evaluation:
-        """What one candidate's values in all scenarios mean, with this added to its arrivals."""
+        """Evaluate a candidate's values in all scenarios, with an offset added to arrivals."""
         return self.evaluator.of_values(values, offset)
 
     @property
@@ -191,12 +192,12 @@ class Program:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the state on arrival has to be the wanted one."""
+        """Return whether the state on arrival has to be the wanted one."""
         return self.residual_limit == 0 and self.peak != RESIDUAL
 
     @property
     def bounds_residual(self) -> bool:
-        """Whether the residual stands in an inequality."""
+        """Return whether the residual stands in an inequality."""
         return self.peak == RESIDUAL or (np.isfinite(self.residual_limit) and not self.at_rest)
 
 
@@ -241,7 +242,7 @@ def programs_of(tasks: Sequence[PointToPoint], profile: JointProfile, steps: int
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver gives for one start, in SI units and by its own steps.
+    """The solution that a solver finds from one start, in SI units and by its own steps.
 
     Attributes
     ----------
@@ -262,6 +263,9 @@ class Solution:
         residual, too, where rest on arrival is asked for.
     reason : str
         How it ended, in the solver's own words.
+    solved_by : mapping of str to str, bool, int, float or None
+        The solver that found it, with its options, as a record states them. It stays when the
+        solution is corrected for what its steps miss.
     """
 
     coefficients: NDArray[np.float64]
@@ -272,6 +276,7 @@ class Solution:
     arrival: NDArray[np.float64]
     shadow_prices: Mapping[str, float] = field(default_factory=dict)
     reason: str = ""
+    solved_by: Mapping[str, Setting] = field(default_factory=dict)
 
     @property
     def residual(self) -> float:
@@ -291,7 +296,7 @@ def shadow_prices(
     of_arrival: NDArray[np.float64],
     tips: NDArray[np.float64],
 ) -> dict[str, float]:
-    """What the least energy falls by if a limit is widened [J by its unit], from multipliers.
+    """Return the decrease of the least energy per unit of each widened limit [J by its unit].
 
     Those of what is bounded, by name, and of the arrival are of SI units, and of an objective with
     the factor `of_energy` of the energy [1/J]. The tips are rows as of `price_of_rest`.

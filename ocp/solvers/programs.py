@@ -33,7 +33,7 @@ class _Constraint(ABC):
 
     @property
     def count(self) -> int:
-        """How many values."""
+        """Number of values of the quantity."""
         return self.upper.shape[1]
 
     @abstractmethod
@@ -81,7 +81,7 @@ class _QuantityLimit(_Constraint):
     """A quantity at the nodes of the steps, of the nominal plant or in all scenarios."""
 
     def __init__(self, place: slice, scenarios: int, bounds: Array, scale: Array) -> None:
-        """Where it stands among the limited; bounds (problems, 2) and scales (problems,)."""
+        """Take the place among the limited values; bounds (problems, 2) and scales (problems,)."""
         self._scenarios = slice(0, scenarios)
         self._place = place
         self._scale = scale[:, None]
@@ -267,7 +267,7 @@ class Programs:
         return {name: bounded[:, place] for name, place in self._places.items()}
 
     def evaluate(self, rows: Index, x: Array, multipliers: Multipliers, width: Array) -> Model:
-        """The model of rows at their unknowns, as of `funnel.RowPrograms`."""
+        """Evaluate the model of rows at their unknowns, for `funnel.RowPrograms`."""
         motions = self._simulate(rows, x, multipliers, width)
         scale = self._arrival[rows]
         weights = self.weights[rows]

@@ -1,4 +1,4 @@
-"""What solves problems, as a value that users pass: its name and its options."""
+"""Solvers as values that users pass: a name and options."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ S = TypeVar("S", bound="Solver")
 
 
 class Option(NamedTuple):
-    """What stands with a field of a solver, of which commands, records and files make an option.
+    """Facts about a field of a solver, from which commands, records and files make an option.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Option(NamedTuple):
 
     @property
     def setting(self) -> str:
-        """What a record calls it, as solver_tolerance."""
+        """Name of the option in a record, such as solver_tolerance."""
         return f"{NAME}_{self.name}"
 
     @property
@@ -136,7 +136,7 @@ class Solver:
 
     @classmethod
     def options(cls) -> list[Option]:
-        """Its options, in the order of its fields."""
+        """List the options of the solver, in the order of its fields."""
         kinds = get_type_hints(cls)
         return [
             entry.metadata[_OPTION]._replace(
@@ -148,7 +148,7 @@ class Solver:
 
     @classmethod
     def stated_options(cls) -> list[Option]:
-        """Its options on which an answer depends."""
+        """List the options on which an answer depends."""
         return [entry for entry in cls.options() if entry.stated]
 
     def solve(
@@ -182,7 +182,7 @@ class Solver:
 
     @property
     def stated(self) -> dict[str, Setting]:
-        """What a record says of it: its name, and options that are not the default."""
+        """Entries of a record about this solver: its name, and options that are not the default."""
         options = {
             entry.setting: getattr(self, entry.name)
             for entry in self.stated_options()

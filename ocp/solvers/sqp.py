@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -66,7 +66,7 @@ class Sqp(Solver):
                 groups=None if groups is None else np.array([groups[i] for i in places]),
             )
             solutions.update(zip(places, _in_units(programs, ended, alike)))
-        return [solutions[i] for i in range(len(problems))]
+        return [replace(solutions[i], solved_by=self.stated) for i in range(len(problems))]
 
 
 def _group_by_form(problems: Sequence[Program]) -> Iterable[list[int]]:
@@ -114,7 +114,7 @@ def _in_units(programs: Programs, ended: Ended, problems: Sequence[Program]) -> 
 def _shadow_prices(
     programs: Programs, ended: Ended, problems: Sequence[Program]
 ) -> list[dict[str, float]]:
-    """What each least energy falls by if a limit is widened [J by its unit]."""
+    """Return the decrease of each least energy per unit of each widened limit [J by its unit]."""
     multipliers = programs.split(ended.multipliers.bounded)
     prices = list[dict[str, float]]()
     for i, problem in enumerate(problems):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from quietarm.ocp import Front
+from quietarm.ocp import Front, Record, Solver, Sqp
 from quietarm.ocp.objectives import refuse_peaks
+from quietarm.ocp.solvers.choice import stated_solver
 from quietarm.studies.answers.read_answers import format_of, load_front, load_plans
 from quietarm.studies.sweep.library import MoveLibrary
 from quietarm.views.explore.by_hand import MoveByHand
@@ -16,16 +17,32 @@ def open_file(path: Path) -> MoveByHand:
     if path.is_dir() or path.suffix == ".zarr":
         library = MoveLibrary(path)
         middle = {axis.name: axis.values[len(axis.values) // 2] for axis in library.grid.axes}
-        return MoveByHand.of_plan(library.plan(**middle), library=library)
+        solver = library.store.definition.settings.solver
+        return MoveByHand.of_plan(library.plan(**middle), library=library, solver=solver)
     if format_of(path) == f"quietarm-{Front.kind}":
         front = load_front(path)
         refuse_peaks(str(path), front.objectives)
         coefficients = front.points[0].coefficients
-        begun = MoveByHand(front.task, front.profile, coefficients, bound=front.record.bound)
+        begun = MoveByHand(
+            front.task,
+            front.profile,
+            coefficients,
+            bound=front.record.bound,
+            solver=_solver_of(front.record),
+        )
         return begun.pick(front, coefficients)
     (plan,) = load_plans([path]).values()
-    limit = plan.residual_limit or None
-    return MoveByHand.of_plan(plan, residual_limit=limit, bound=plan.record.bound)
+    return MoveByHand.of_plan(
+        plan,
+        residual_limit=plan.residual_limit or None,
+        bound=plan.record.bound,
+        solver=_solver_of(plan.record),
+    )
+
+
+def _solver_of(record: Record) -> Solver:
+    """Return the solver that an answer was asked of, with its options; the SQP of others."""
+    return stated_solver(record.settings) or Sqp()
 
 
 def is_file(what: str) -> bool:

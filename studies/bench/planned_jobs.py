@@ -132,7 +132,7 @@ def jobs_of(
     for run_seed in range(seed, seed + runs):
         for problem in problems:
             for name in methods:
-                method = NamedMethod.read(name)
+                method = NamedMethod.admitted(name, PRESETS)
                 preset = PRESETS.get(method.method)
                 if problem.task.limits and preset is not None and not preset.keeps_limits:
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
@@ -141,7 +141,7 @@ def jobs_of(
                 if unfit:
                     left_out[f"{unfit}: left out on {problem.name}"] = None
                     continue
-                if method.is_gradient_job:
+                if method.by_gradient:
                     jobs.append(Job(problem, name, run_seed, None, of_method[name]))
                     if noise:
                         left_out[f"{name} has no noise: its gradient is that of the model"] = None

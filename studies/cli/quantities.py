@@ -417,9 +417,12 @@ def read_settings(pairs: Iterable[tuple[str, str]]) -> dict[str, float | int | b
 
 
 def _literal(text: str) -> float | int | bool | str:
-    """Read a value of any kind: true or false, a number, or else a word."""
+    """Read a value of any kind: true or false, a number, a share such as 25 %, or else a word."""
     if text.lower() in ("true", "false"):
         return text.lower() == "true"
+    share = text.strip().removesuffix("%")
+    if share != text.strip() and is_number(share.strip()):
+        return float(share) / 100
     if not is_number(text):
         return text
     number = float(text)

@@ -20,6 +20,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.saved import plain
+from quietarm.ocp.solvers.choice import STAND_IN, without_part
 from quietarm.studies.compare.staircase import best_of, evenly_spaced
 from quietarm.views.report.method_rows import is_gradient, label_of
 from quietarm.views.report.words import objective_words
@@ -324,6 +325,7 @@ def _settings(front: Front) -> dict[str, object]:
     settings = {"bound": front.record.bound, **front.record.settings}
     for name in BESIDE_SETTINGS:  # of a bench's run, and no setting of its method
         settings.pop(name, None)
+    settings = without_part(STAND_IN, settings)  # which depends on the seed
     return {**settings, "profile": profile.pop("name"), **profile}
 
 

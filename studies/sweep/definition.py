@@ -23,10 +23,16 @@ from quietarm.studies.sweep.move_grid import MoveGrid
 
 STATUS = "status"
 COEFFICIENTS = "coefficients"
+SOLVED_BY = "solved_by"
 JUMP = "jump"
 DIGEST = "digest"
 STATES = ("not computed", *(status.value for status in SolveStatus))
 """What `status` says, by its number."""
+
+
+def number_of_solver(name: str) -> int:
+    """Return what `solved_by` says of a solver: its place among all, -1 of none of them."""
+    return [*SOLVERS].index(name) if name in SOLVERS else -1
 
 
 class Variable(NamedTuple):
@@ -226,6 +232,8 @@ class Definition:
         variables["residual"] = Variable(tip, attributes=window)
         variables[COEFFICIENTS] = Variable("1", size)
         variables[STATUS] = Variable("1", {}, np.int8(0), states)
+        solvers = {"flag_values": [*range(len(SOLVERS))], "flag_meanings": " ".join(SOLVERS)}
+        variables[SOLVED_BY] = Variable("1", {}, np.int8(-1), solvers)
         variables[JUMP] = Variable("1", {}, np.int32(0), jumps)
         if self.front:
             point = {"point": self.front}

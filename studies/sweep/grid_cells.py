@@ -23,7 +23,15 @@ from quietarm.ocp import (
 from quietarm.ocp.figures import ACTS_AFTER
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness import sensitivities_of_moves
-from quietarm.studies.sweep.definition import COEFFICIENTS, STATES, STATUS, Definition
+from quietarm.ocp.solvers.solver import NAME
+from quietarm.studies.sweep.definition import (
+    COEFFICIENTS,
+    SOLVED_BY,
+    STATES,
+    STATUS,
+    Definition,
+    number_of_solver,
+)
 from quietarm.studies.sweep.move_grid import by_plant
 
 Cells = Iterator[dict[str, Any]]
@@ -120,12 +128,13 @@ def _plan_certain(definition: Definition, tasks: Sequence[PointToPoint], cold: b
         solver=settings.solver,
     )
     for k, status in enumerate(moves.status):
-        row: dict[str, Any] = {STATUS: STATES.index(status.value)}
+        row: dict[str, Any] = {STATUS: STATES.index(status.value), SOLVED_BY: number_of_solver("")}
         if np.isfinite(moves.energy[k]):
             for name in ("energy", "residual", "iterations", COEFFICIENTS):
                 row[name] = getattr(moves, name)[k]
             row |= {f"peak_{name}": values[k] for name, values in moves.peaks.items()}
             row |= {f"price_{name}": price for name, price in moves.shadow_prices[k].items()}
+            row[SOLVED_BY] = number_of_solver(str(moves.solved_by[k].get(NAME)))
         yield row
 
 
@@ -147,7 +156,7 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
         except QuietarmError as error:
             infeasible = isinstance(error, InfeasibleTaskError)
             status = SolveStatus.INFEASIBLE if infeasible else SolveStatus.ITERATION_LIMIT
-            yield {STATUS: STATES.index(status.value)}
+            yield {STATUS: STATES.index(status.value), SOLVED_BY: number_of_solver("")}
             continue
         guess = plan.coefficients
         acting = {ACTS_AFTER: plan.acts_after} if definition.has_acting else {}
@@ -158,6 +167,7 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
             "energy": plan.energy,
             "residual": plan.residual,
             **acting,
+            SOLVED_BY: number_of_solver(plan.record.method),
             **peaks,
         }
 

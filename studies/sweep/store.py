@@ -27,7 +27,14 @@ from quietarm.ocp.limits import SWEEP
 from quietarm.ocp.record import versions
 from quietarm.ocp.saved import plain, typed
 from quietarm.studies.sweep.cell_interpolation import find_jumps
-from quietarm.studies.sweep.definition import COEFFICIENTS, DIGEST, JUMP, STATUS, Definition
+from quietarm.studies.sweep.definition import (
+    COEFFICIENTS,
+    DIGEST,
+    JUMP,
+    SOLVED_BY,
+    STATUS,
+    Definition,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -43,19 +50,19 @@ class Store:
 
     def __init__(self, path: Path) -> None:
         # variables that begin so are of limited quantities, of which a dataset has those of its
-        # time
+        # time, as of what is newer than version 2.0.0
         prefix = "peak_"
         self.path = path
         with _undisturbed():
             self.dataset = _open(path)
         with _undisturbed(), _damage_told(path):
             self.definition = typed(self.note("sweep"), Definition)
-            added = {figure.name for figure in self.definition.figures}
+            newer = {SOLVED_BY, *(figure.name for figure in self.definition.figures)}
             self._names = [
                 name
                 for name in self.definition.variables
                 if name != JUMP
-                and (name in self.dataset or not (name.startswith(prefix) or name in added))
+                and (name in self.dataset or not (name.startswith(prefix) or name in newer))
             ]
             self._digested = self._read_digested()
             self._check_layout()

@@ -10,7 +10,7 @@ import pytest
 from several_joints import TwoLinks
 
 import quietarm as qa
-from quietarm.models import JointMotion, LinearAxis, Plant
+from quietarm.models import JointMotion, LinearAxis, Plant, dimensions
 from quietarm.models.dimensions import (
     ACCELERATION,
     DAMPING,
@@ -36,6 +36,7 @@ from quietarm.ocp import (
     remove_quantity,
     rms,
 )
+from quietarm.ocp import figures as table_of_figures
 
 
 @pytest.mark.parametrize(
@@ -299,3 +300,17 @@ def test_an_own_limit_does_not_bound_how_soon_a_joint_arrives():
     # refused before, as if a structure could not bend that slowly
     loose = qa.plan_move(task, qa.CycloidPolynomial(6), residual_limit=1e-3)
     assert loose.figures["peak_tip_rush"] < 0.0501
+
+
+@pytest.mark.parametrize("kind", [Figure, Quantity])
+def test_the_example_in_a_message_is_one(kind):
+    code = kind.example.partition(", as ")[2].partition(", with unit and words of ")[0]
+    made = eval(code, {**vars(dimensions), **vars(table_of_figures)})
+    assert isinstance(made, kind)
+    add, remove = {Figure: (add_figure, remove_figure), Quantity: (add_quantity, remove_quantity)}[
+        kind
+    ]
+    try:
+        add(made)
+    finally:
+        remove(made.name)

@@ -31,6 +31,8 @@ ENTRIES = re.split(r"^## ", PAGES["extend"], flags=re.MULTILINE)[1:]
 RECIPES = {entry.partition("\n")[0]: entry for entry in ENTRIES}
 WITHOUT_A_TEST = {"A solver's option"}
 """A field of quietarm's own solver: tests/studies/cli/test_solver_options.py makes one up."""
+IN_A_CHECKOUT = "In a checkout"
+"""The section on entries of quietarm's own tables, which have recipes above it."""
 LINK = qa.PointToPoint(qa.SingleLinkManipulator(), target=qa.deg(30), duration=0.8)
 NAMED = "single-link-30deg-0.8s-2-terms"
 
@@ -73,10 +75,11 @@ def follow(made_up, done):
 
 def test_every_recipe_has_a_test_and_its_row_in_the_table():
     tested = re.findall(r'follow\("([^"]*)"\)', Path(__file__).read_text())
-    assert {*tested} | WITHOUT_A_TEST == {*RECIPES}
+    recipes = [name for name in RECIPES if name != IN_A_CHECKOUT]
+    assert {*tested} | WITHOUT_A_TEST == {*recipes}
     table = PAGES["extend"].partition("## ")[0]
     anchors = re.findall(r"^\| \[.*?\]\(#(.*?)\)", table, re.MULTILINE)
-    slugs = [re.sub(r"[^a-z ]", "", name.lower()).replace(" ", "-") for name in RECIPES]
+    slugs = [re.sub(r"[^a-z ]", "", name.lower()).replace(" ", "-") for name in recipes]
     assert anchors == slugs
 
 
@@ -417,22 +420,77 @@ PLACES = {"An export format": "views/formats", "A profile": "ocp/profiles", "A p
 PACKAGES = "quietarm", "models", "ocp", "metaheuristics", "machine", "views", "studies"
 
 
-@pytest.mark.slow
-def test_files_in_the_folders_of_a_checkout(folder):
-    checkout = folder / "checkout"
+@pytest.fixture
+def checkout(folder):
+    """A copy of the packages."""
+    copy = folder / "checkout"
     for name in PACKAGES:
         ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / name, checkout / name, symlinks=True, ignore=ignored)
-    for recipe, place in PLACES.items():
-        name, code = file_of(recipe)
-        (checkout / place / name).write_text(code)
+        shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=ignored)
+    return copy
+
+
+def run_in(checkout, line):
+    """Type a line of the copy's program in a process of its own."""
     program = "import sys; from quietarm.studies.cli import main; main(sys.argv[1:])"
-    move = "plan pendulum --target 1 --duration 2 --profile minimum-jerk --terms 4 --quiet"
-    line = shlex.split(f"{move} --output move.json --output move.nc")
-    ran = subprocess.run(
-        [sys.executable, "-W", "error", "-c", program, *line],
+    return subprocess.run(
+        [sys.executable, "-W", "error", "-c", program, *shlex.split(line)],
         capture_output=True, text=True, timeout=600,
         env={"PYTHONPATH": str(checkout), "PATH": ""},
     )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_files_in_the_folders_of_a_checkout(checkout):
+    for recipe, place in PLACES.items():
+        name, code = file_of(recipe)
+        (checkout / place / name).write_text(code)
+    move = "plan pendulum --target 1 --duration 2 --profile minimum-jerk --terms 4 --quiet"
+    ran = run_in(checkout, f"{move} --output move.json --output move.nc")
     assert (ran.returncode, ran.stderr) == (0, "")
     assert ran.stdout.endswith("wrote move.json\nwrote move.nc\n")
+
+
+def insert(file, before, text, imports=""):
+    """Write an entry into a file of the copy, and what it needs to import."""
+    whole = file.read_text()
+    assert whole.count(before) == 1
+    begin = "from __future__ import annotations\n"
+    whole = whole.replace(begin, f"{begin}\n{imports}\n").replace(before, f"{text}{before}")
+    file.write_text(whole)
+
+
+@pytest.mark.slow
+def test_entries_of_a_checkout(checkout):
+    """A limit, a figure and an option in one file each; what the option does is not made up."""
+    section = RECIPES[IN_A_CHECKOUT]
+    limit, figure = re.findall(r"^```text\n(.*?)^```$", section, re.DOTALL | re.MULTILINE)
+    (option,) = re.findall(r"^boldness.*\n", RECIPES["A solver's option"], re.MULTILINE)
+    ocp = checkout / "ocp"
+    dimensions = "from quietarm.models.dimensions import"
+    insert(ocp / "limits.py", "    )\n}\n_OWN", limit, f"{dimensions} SECOND")
+    after = ')\n"""Figures that stand after the peaks'
+    places = "from quietarm.ocp.limits import COMPARISON, FRONT"
+    insert(ocp / "figures.py", after, figure, f"{dimensions} EFFORT\n{places}")
+    imports = (
+        "from functools import partial\nfrom quietarm.ocp.checks import positive\n"
+        "from quietarm.ocp.solvers.solver import option"
+    )
+    solve = "    @on_one_thread\n    def solve("
+    insert(ocp / "solvers" / "sqp.py", solve, f"    {option}\n", imports)
+    move = "single-link --target 30deg --duration 0.8 --terms 4 --quiet"
+    asked = "--tip-acceleration-limit 8 --boldness 25%"
+    ran = run_in(checkout, f"front {move} --points 3 {asked} --output front.csv --output f.json")
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert re.search(r"least energy .*RMS torque \S+ N m", ran.stdout)
+    assert "rms_torque_Nm" in pd.read_csv("front.csv")
+    record = json.loads(Path("f.json").read_text())["record"]["settings"]
+    assert record["solver_boldness"] == 0.25
+    ran = run_in(checkout, f"plan {move} {asked}")
+    words = " ".join(ran.stdout.split())
+    assert "limits tip acceleration 8 m/s^2" in words
+    assert "peak tip acceleration 8 m/s^2" in words or "peak tip acceleration 7" in words
+    assert "RMS torque" in words
+    listed = run_in(checkout, "list epsilon objectives").stdout
+    assert "solver_boldness" in listed
+    assert "peak-tip-acceleration" in listed

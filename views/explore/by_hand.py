@@ -23,6 +23,8 @@ from quietarm.ocp import (
     JointProfile,
     Plan,
     PointToPoint,
+    Solver,
+    Sqp,
     epsilon_front,
     evaluate_coefficients,
     plan_move,
@@ -132,6 +134,8 @@ class MoveByHand:
         The motion as its method gave it; evaluated by CVODES where there is none.
     begun : PointToPoint or None
         The move of the start, from which the dials have their ranges.
+    solver : Solver
+        What finds the gradient's motion and the front.
     """
 
     task: PointToPoint
@@ -143,6 +147,7 @@ class MoveByHand:
     front: Front | None = None
     plan: Plan | None = None
     begun: PointToPoint | None = None
+    solver: Solver = Sqp()
 
     @classmethod
     def of_plan(cls, plan: Plan, **more: Any) -> MoveByHand:
@@ -318,13 +323,13 @@ class MoveByHand:
     def solve(self) -> MoveByHand:
         """Take the gradient's motion in hand; it raises what `plan_move` does."""
         settings: dict[str, Any] = {"residual_limit": self.residual_limit, "bound": self.bound}
-        plan = plan_move(self.task, self.profile, **settings)
+        plan = plan_move(self.task, self.profile, solver=self.solver, **settings)
         return self._with(coefficients=plan.coefficients, plan=plan)
 
     def find_front(self, report: Progress = no_report) -> Front:
         """Trace the front of this move; it raises what `epsilon_front` does."""
         settings: dict[str, Any] = {"bound": self.bound, "points": FRONT_POINTS, "report": report}
-        return epsilon_front(self.task, self.profile, **settings)
+        return epsilon_front(self.task, self.profile, solver=self.solver, **settings)
 
     def pick(self, front: Front, coefficients: Sequence[float]) -> MoveByHand:
         """Take the motion of a point of this move's front in hand."""

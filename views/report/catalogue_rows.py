@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, fields
 from typing import Any
 
 from quietarm.metaheuristics import PRESETS
+from quietarm.metaheuristics.methods.gradient_methods import gradient_settings, solver_settings
+from quietarm.metaheuristics.methods.settings import MethodSetting
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
 from quietarm.models import Plant
@@ -14,6 +17,7 @@ from quietarm.ocp.checks import spelling, unknown
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.objectives import known_objectives
+from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.views.report.method_rows import GRADIENT_LABELS, label_of
 from quietarm.views.report.words import error_words, objective_words, window_words
 
@@ -23,10 +27,10 @@ KINDS = ("plants", "problems", "methods", "objectives")
 
 def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
     """A title, and rows of one of `KINDS` or of an entry by its name; ValueError of no other."""
-    known = [*KINDS, *plants, *PROBLEMS, *GRADIENT_LABELS, *PRESETS]
+    known = [*KINDS, *plants, *PROBLEMS]
     spelt = {spelling(name): name for name in known}
     if spelling(name) not in spelt:
-        raise ValueError(unknown("name", name, known))
+        return _method_rows(name, known)
     name = spelt[spelling(name)]
     if name == "plants":
         rows = [(plant, (kind.__doc__ or "").partition("\n")[0]) for plant, kind in plants.items()]
@@ -44,22 +48,31 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
         return f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows
-    if name in PROBLEMS:
-        return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
-    if name not in PRESETS:
-        command = "bench" if name == "multistart" else "front"
-        words = f"{label_of(name)}, by the gradient; its options: quietarm {command} --help"
-        return name, [("method", words)]
-    preset = PRESETS[name]
-    settings = [
-        (
-            setting.name,
-            f"{'-' if setting.default is None else setting.default}: {setting.meaning}",
-        )
-        for setting in preset.settings
-    ]
+    return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
+
+
+def _method_rows(typed: str, others: Sequence[str]) -> tuple[str, list[Row]]:
+    """A title, and the settings of a method by its name; ValueError where there is none."""
+    name = NamedMethod.of_typed(typed, PRESETS)
+    named = NamedMethod.read(name)
+    if not (named.by_gradient or named.method in PRESETS):
+        raise ValueError(unknown("name", typed, [*others, *GRADIENT_LABELS, *PRESETS]))
+    named = NamedMethod.admitted(name, PRESETS)
+    if named.by_gradient:
+        title = f"{name}: {label_of(name, solver=Sqp.name)}, by the gradient"
+        return title, list(map(_setting, gradient_settings(named)))
+    preset = PRESETS[named.method]
     size = ("population, generations", f"{preset.population}, {preset.generations}")
-    return f"{name}: {preset.label}, {preset.source}", [size, *settings]
+    settings = {setting.name: setting for setting in preset.settings}
+    if named.polish:
+        settings = {setting.name: setting for setting in solver_settings()} | settings
+    return f"{name}: {label_of(name)}, {preset.source}", [size, *map(_setting, settings.values())]
+
+
+def _setting(setting: MethodSetting) -> Row:
+    """A setting's default and meaning."""
+    default = "-" if setting.default is None else setting.default
+    return setting.name, f"{default}: {setting.meaning}"
 
 
 def _objective(name: str) -> str:

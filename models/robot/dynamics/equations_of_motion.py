@@ -115,14 +115,14 @@ class Dynamics:
         self._place = [self._order.index(number) for number in leaders]
 
     def stiffened(self, factor: float) -> Dynamics:
-        """The same with so many times the stiffness, whose functions are the same."""
+        """Return these equations with a multiple of the stiffness, by the same functions."""
         stiffened = copy.copy(self)
         stiffened.mechanism = self.mechanism.stiffened(factor)
         return stiffened
 
     @property
     def size(self) -> int:
-        """How many joints move."""
+        """Number of joints that move."""
         return self.driven + self.sprung
 
     def torques(self, x: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
@@ -206,7 +206,7 @@ class Dynamics:
         return p
 
     def stiffness_at(self, q: Array, p: Array) -> tuple[Array, Array]:
-        """What is missing from equilibrium [N m], and its slopes: springs and gravity."""
+        """Return the imbalance of springs and gravity [N m], and its slopes."""
         torque, slopes = self.at_rest(np.concatenate([q, p]))
         stiffness = self.mechanism.stiffness
         excess = torque[self.driven :] + stiffness * p

@@ -1,4 +1,4 @@
-"""Where a link of a robot stands by the positions of its driven joints, if nothing bends."""
+"""Positions of a robot's links by the positions of its driven joints, if nothing bends."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from quietarm.models.robot.frames import rotation_of
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Where a link stands, seen from the ground: its rotation, shape (3, 3), and its origin [m]."""
+    """The pose of a link, seen from the ground: its rotation, shape (3, 3), and its origin [m]."""
 
     rotation: Array
     origin: Array
 
     @classmethod
     def of(cls, numbers: Array, before: Pose) -> Pose:
-        """By x, y, z [m], the rotation as before; or with roll, pitch, yaw [rad], as in a URDF."""
+        """Make a pose by x, y, z [m], with the present rotation or roll, pitch, yaw [rad]."""
         rotation = rotation_of(*numbers[3:]) if len(numbers) == 6 else before.rotation
         return cls(rotation, numbers[:3])
 
     def moved(self, way: Array) -> Pose:
-        """By a way in the frame of the ground [m], its rotation as before."""
+        """Return the pose moved by a way in the frame of the ground [m], with the same rotation."""
         return Pose(self.rotation, self.origin + way)
 
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """Where a link stands by the positions of the driven joints.
+    """The pose of a link by the positions of the driven joints.
 
     Attributes
     ----------
@@ -47,12 +47,12 @@ class Kinematics:
     link: str
 
     def pose(self, q: Array) -> Pose:
-        """Where the link stands."""
+        """Return the pose of the link."""
         rotation, origin = self._place(q)
         return Pose(rotation, origin.ravel())
 
     def offset(self, q: Array, pose: Pose) -> tuple[Array, Array]:
-        """How far the link is from a pose [m, rad], six numbers, and their slopes by q."""
+        """Return how far the link is from a pose, six numbers [m, rad], and slopes by q."""
         offset, slopes = self._offset(q, pose.rotation, pose.origin)
         return offset.ravel(), slopes
 

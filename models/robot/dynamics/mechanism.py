@@ -84,7 +84,7 @@ class Mechanism:
 
     @property
     def spring_names(self) -> list[str]:
-        """Of the sprung joints."""
+        """Names of the sprung joints."""
         return [self.bodies[number].joint for number in self.sprung]
 
     @property
@@ -93,7 +93,7 @@ class Mechanism:
         return np.array([self.bodies[number].of_beam for number in self.sprung], bool)
 
     def stiffened(self, factor: float) -> Mechanism:
-        """The same with so many times its stiffness, its damping ratios kept."""
+        """Return the mechanism with a multiple of its stiffness and the same damping ratios."""
         return replace(
             self,
             stiffness=factor * self.stiffness,
@@ -101,7 +101,7 @@ class Mechanism:
         )
 
     def loaded(self, mass: float) -> Mechanism:
-        """The same with another mass at the end of the beam [kg]; a negative one takes it away."""
+        """Return the mechanism with a mass [kg] added at the end of the beam, or taken away."""
         number, frame = self.links[BEAM_END]
         body = self.bodies[number]
         point = Inertia(mass).seen_from(frame)
@@ -186,7 +186,7 @@ def _at_the_motors(robot: RobotParts, values: Mapping[str, float]) -> Array:
 
 
 def _base(tree: _Tree, robot: RobotParts) -> tuple[int, Frame]:
-    """Where the root link stands: on the ground, or on a pedestal that rocks about x and y."""
+    """Frame of the root link: on the ground, or on a pedestal that rocks about x and y."""
     if robot.base is None:
         return GROUND, Frame()
     pivot = Frame(origin=np.array([0.0, 0.0, -robot.base.height]))
@@ -203,7 +203,7 @@ def _add_link(tree: _Tree, urdf: Urdf, link: str, place: tuple[int, Frame]) -> N
 
 
 def _place(tree: _Tree, joint: UrdfJoint) -> tuple[int, Frame]:
-    """Where the frame of a joint stands."""
+    """Return the place of a joint's frame."""
     number, frame = tree.links[joint.parent]
     return number, frame @ joint.frame
 
@@ -211,7 +211,7 @@ def _place(tree: _Tree, joint: UrdfJoint) -> tuple[int, Frame]:
 def _joined(
     tree: _Tree, robot: RobotParts, joint: UrdfJoint, place: tuple[int, Frame]
 ) -> tuple[int, Frame]:
-    """Where the link after a joint stands, and the bodies that it takes."""
+    """Return the place of the link after a joint, and the bodies that the joint takes."""
     if joint.kind == FIXED:
         return place
     slides = joint.kind == PRISMATIC
@@ -235,7 +235,7 @@ def _joined(
 
 
 def _moved(joint: UrdfJoint, position: float) -> Frame:
-    """What a joint does that is held at a position [rad or m]."""
+    """Return the frame to which a joint moves what it carries, at a position [rad or m]."""
     if joint.kind == PRISMATIC:
         return Frame(origin=position * joint.axis)
     return Frame(rotation_about(joint.axis, position))

@@ -19,7 +19,7 @@ _MOST_STIFFER = 25.0
 
 
 def as_measured(dynamics: Dynamics, measured: Measured) -> Dynamics:
-    """With springs by which the first mode has its measured frequency."""
+    """Return the robot with springs by which the first mode has its measured frequency."""
     from scipy.optimize import brentq  # takes a quarter of a second to load
 
     q = np.array(measured.at)
@@ -74,7 +74,7 @@ def _too_soft(dynamics: Dynamics, spring: str, q: Array) -> ValueError:
 
 
 def tip_offset(dynamics: Dynamics, tip: Any, q: Array, p: Array) -> Array:
-    """Where the tip is, seen in its frame on the robot that does not bend [m]."""
+    """Return the displacement of the tip, seen in its frame on the rigid robot [m]."""
     x = ca.SX.sym("x", dynamics.size)
     rotation, origin = dynamics.place(tip, x)
     outputs = [ca.densify(rotation), ca.densify(origin)]

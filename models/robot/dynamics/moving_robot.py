@@ -56,7 +56,7 @@ class MovingRobot(RobotParts):
 
     @interruptible
     def kinematics(self, link: str | None = None) -> Kinematics:
-        """Where a link stands, if nothing bends; by default that with the beam, or else the tip.
+        """Return the kinematics of a link; by default of that with the beam, or else the tip.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class MovingRobot(RobotParts):
 
     @interruptible
     def sag(self, q: Sequence[float] | Array) -> Array:
-        """How far the tip hangs below the robot that does not bend [m], in the tip's frame."""
+        """Return how far the tip hangs below that of a rigid robot [m], in the tip's frame."""
         dynamics = self.dynamics
         q = np.asarray(q, float)
         p = sag_at(dynamics, q)

@@ -1,4 +1,4 @@
-"""What a robot is made of: its URDF, which joints are driven, what bends."""
+"""The parts of a robot: its URDF, the joints that are driven, and what bends."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class RobotParts:
         return {name: entry for name, entry in followers.items() if entry.leader in moving}
 
     def held_position(self, joint: str) -> float:
-        """Where a joint is that neither is driven nor follows one that moves [rad or m]."""
+        """Return the position of a joint that is neither driven nor led [rad or m]."""
         return held_position(self.description, joint, self.held)
 
     def kind_of(self, joint: str) -> str:

@@ -167,7 +167,7 @@ class Beam:
 
     @property
     def count(self) -> int:
-        """How many hinges for each direction."""
+        """Number of hinges for each direction."""
         return USUAL_HINGES if self.pieces is None else self.pieces
 
     @property
@@ -184,12 +184,12 @@ class Beam:
 
     @property
     def places(self) -> Array:
-        """Of the hinges along the beam [m]."""
+        """Places of the hinges along the beam [m]."""
         return self.length * self.chain.places
 
     @property
     def springs(self) -> Array:
-        """Of the hinges [N m/rad], shape (hinges, 2): about x, which bends it along y; about y."""
+        """Springs of the hinges [N m/rad], shape (hinges, 2): about x, to bend along y; about y."""
         along_x, along_y = self.stiffness
         return np.outer(1 / (self.length * self.chain.compliances), [along_y, along_x])
 
@@ -216,7 +216,7 @@ class Beam:
         return Inertia(mass, np.array([0.0, 0.0, length / 2]), np.diag(squares) * mass / 12)
 
     def frequencies(self, along: int) -> Array:
-        """Of the clamped chain of pieces [rad/s], where it bends along x (0) or along y (1)."""
+        """Frequencies of the clamped chain of pieces [rad/s], bent along x (0) or along y (1)."""
         axis = 1 - along
         squares, _ = spectrum(np.diag(self.springs[:, axis]), self._masses(axis))
         return np.sqrt(squares)

@@ -1,4 +1,4 @@
-"""What bends beside a beam: springs of joints, a base that rocks; and what is measured of it."""
+"""Springs of joints and a base that rocks, which bend beside a beam; and measurements of them."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ class FullRobot:
         ]
 
     def accelerations(self, path: JointMotion, angles: ca.SX, rates: ca.SX) -> ca.SX:
-        """Of the springs' angles."""
+        """Return the accelerations of the springs' angles."""
         unknown = ca.SX.sym("acceleration", self.springs)
         torques = self._torques(path, angles, rates, unknown)[self._dynamics.driven :]
         masses = ca.jacobian(torques, unknown)
@@ -81,13 +81,13 @@ class FullRobot:
         return -ca.ldl_solve(forces, *ca.ldl(masses))
 
     def torques(self, path: JointMotion, angles: ca.SX, rates: ca.SX) -> ca.SX:
-        """Of the driven joints."""
+        """Return the torques of the driven joints."""
         accelerations = self.accelerations(path, angles, rates)
         torques = self._torques(path, angles, rates, accelerations)[: self._dynamics.driven]
         return torques + ca.vertcat(*coulomb_torques(self._robot, self.joints(path)))
 
     def tip(self, path: JointMotion, angles: ca.SX) -> ca.SX:
-        """Where the tip is, seen from the ground [m]."""
+        """Position of the tip, seen from the ground [m]."""
         positions = ca.vertcat(*(joint.angle for joint in self.joints(path)), angles)
         _, origin = self._dynamics.place(self._tip, positions)
         return origin
@@ -134,7 +134,7 @@ class FullRobot:
     def _torques(
         self, path: JointMotion, angles: ca.SX, rates: ca.SX, accelerations: ca.SX
     ) -> ca.SX:
-        """Of all joints, by inverse dynamics."""
+        """Return the torques of all joints, by inverse dynamics."""
         joints = self.joints(path)
         return self._dynamics.torques(
             ca.vertcat(*(joint.angle for joint in joints), angles),
@@ -144,6 +144,6 @@ class FullRobot:
 
 
 def _padded(table: Array, terms: int) -> Array:
-    """With zeros for terms that a derivative has no more."""
+    """Pad with zeros for terms that a derivative has no more."""
     missing: Sequence[tuple[int, int]] = [(0, 0), (0, terms - table.shape[1]), (0, 0)]
     return np.pad(table, missing)

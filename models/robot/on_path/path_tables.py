@@ -94,7 +94,7 @@ class Tables:
 
     @property
     def groups(self) -> dict[str, dict[str, Array]]:
-        """Of the modes, the torques, and the tips' rows and their slopes."""
+        """Tables of the modes, the torques, and the tips' rows and their slopes, by group."""
         return {
             "modes": self.modes,
             "torques": self.torques,
@@ -103,7 +103,7 @@ class Tables:
 
     @property
     def size(self) -> int:
-        """How many numbers they hold."""
+        """Number of values that the tables hold."""
         groups = [*self.modes.values(), *self.torques.values(), self.tips]
         return sum(int(np.count_nonzero(table)) for table in groups)
 
@@ -212,7 +212,7 @@ Groups = dict[str, dict[str, Array]]
 def variations_of(
     robot: MovingRobot, path: GeometricPath, names: tuple[str, ...]
 ) -> dict[tuple[int, ...], Groups]:
-    """What is added to the tables where multiples of `VARIED` are not 1.
+    """Return what is added to the tables if multiples of `VARIED` are not 1.
 
     Parameters
     ----------
@@ -311,14 +311,14 @@ def range_of_tables() -> tuple[float, float]:
 
 
 def _filled(table: Array, terms: int) -> Array:
-    """With zeros for the terms that are not needed."""
+    """Fill up with zeros for the terms that are not needed."""
     filled = np.zeros((table.shape[0], terms, *table.shape[2:]))
     filled[:, : table.shape[1]] = table
     return filled
 
 
 class _Layout:
-    """Where every coefficient stands in a row, and how large it is."""
+    """Places of all coefficients in a row, and their sizes."""
 
     def __init__(self, example: Coefficients) -> None:
         self._parts = {name: part.shape[1:] for name, part in _named(example).items()}
@@ -340,7 +340,7 @@ class _Layout:
         return found
 
     def scales(self, rows: Array) -> Array:
-        """What each column is compared with: the largest value of its term, or what matters.
+        """Return the size to which each column is compared: its term's largest, or what matters.
 
         The path forces the modes by an acceleration; they answer with amplitudes of that over the
         square of the lowest frequency, which tells what else of their equations and of the torques

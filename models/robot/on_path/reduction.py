@@ -213,7 +213,7 @@ class Reduction:
         return slopes[self.directions] @ self.shapes
 
     def _scales(self, rows: Array) -> Array:
-        """By which W is the largest displacement of the tip; of a mode that leaves it, of 1 rad."""
+        """Scale modes so that W is the tip's largest displacement, or 1 rad if the tip stays."""
         largest = np.abs(rows).max(axis=0)
         signs = np.sign(rows[np.abs(rows).argmax(axis=0), np.arange(rows.shape[1])])
         angles = np.abs(self.shapes).max(axis=0)

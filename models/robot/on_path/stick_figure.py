@@ -29,12 +29,12 @@ _PLACES = 11
 
 @lru_cache(maxsize=8)
 def stick_figure_of(robot: MovingRobot, path: GeometricPath) -> StickFigure:
-    """Of a robot on a path, computed once."""
+    """Return the stick figure of a robot on a path, which is computed once."""
     return StickFigure(robot, path)
 
 
 class StickFigure:
-    """Where the joints and the tip of a robot are drawn, seen from the side on which its tip goes.
+    """Places at which a robot's joints and tip are drawn, seen from the side on which its tip goes.
 
     What bends does so as its modes do.
     """
@@ -87,13 +87,13 @@ class StickFigure:
         return 1 + self._bodies[number].parent
 
     def _first_of_beam(self, chain: list[int]) -> int:
-        """How many rows of the chain stand before what is drawn as bent: the beam, or the end."""
+        """Return how many rows of the chain stand before the beam, or all if there is no beam."""
         if not self._has_beam:
             return len(chain)
         return sum(not self._bodies[row - 1].of_beam for row in chain)
 
     def _origins(self, place: float, tips: Array) -> Array:
-        """Of the ground, of every body, and the tip [m], shape (bodies + 2, 3)."""
+        """Return the origins of the ground, every body and the tip [m], shape (bodies + 2, 3)."""
         q = self._path(place)
         p = sag_at(self._dynamics, q)
         rows = self._tables.at(float(place)).values(self._tables.tips)

@@ -224,7 +224,7 @@ class GeometricPath:
     def of(
         cls, function: Callable[[float], ArrayLike], joints: Sequence[str] = ()
     ) -> GeometricPath:
-        """By a function of s from 0 to 1 that gives the joints' positions [rad or m].
+        """Make a path by a function of s from 0 to 1 that gives the joints' positions [rad or m].
 
         It is approximated within 1e-12.
         """
@@ -267,7 +267,7 @@ class GeometricPath:
 
     @property
     def count(self) -> int:
-        """How many joints."""
+        """Number of joints."""
         return len(self.coefficients[0])
 
     @cached_property
@@ -313,7 +313,7 @@ class GeometricPath:
 
     @cached_property
     def off_straight(self) -> Array:
-        """How far a spline leaves the straight lines between its waypoints, by joint [rad or m].
+        """Largest distance of a spline from straight lines between its waypoints [rad or m].
 
         0 of a line, and of a path that a function gives.
         """
@@ -496,7 +496,7 @@ _BESIDE_POSITIONS = {
 
 
 def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
-    """Whatever has joint_names and points in a message, however deep."""
+    """Find the parts of a message that have joint_names and points, however deep."""
     if isinstance(document, Mapping):
         if "points" in document and "joint_names" in document:
             yield document
@@ -508,7 +508,7 @@ def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
 
 
 def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
-    """Whether it is a MultiDOFJointTrajectory, of whole poses."""
+    """Return whether a trajectory is a MultiDOFJointTrajectory, which holds whole poses."""
     points = trajectory["points"]
     first = points[0] if isinstance(points, list) and points else None
     return isinstance(first, Mapping) and "transforms" in first

@@ -62,12 +62,12 @@ class Piecewise:
         return values
 
     def derivative(self, order: int = 1) -> Piecewise:
-        """Of every function by the variable."""
+        """Return the derivative of every function by the variable."""
         pieces = range(len(self.coefficients))
         return Piecewise(self.knots, np.array([self._differentiated(i, order) for i in pieces]))
 
     def on(self, knots: Array) -> Piecewise:
-        """The same functions on finer pieces, whose knots are these and more."""
+        """Return these functions on finer pieces, whose knots include the present ones."""
         terms = self.coefficients.shape[1]
         return Piecewise(knots, interpolate(self, knots, terms))
 
@@ -178,7 +178,7 @@ class Place:
         self._basis = ca.vertcat(*(here * term for here in on for term in basis[:terms]))
 
     def values(self, table: Array) -> Array:
-        """Of functions by their coefficients, (pieces, terms, ...): an array of expressions.
+        """Return values of functions of coefficients (pieces, terms, ...): an array of expressions.
 
         Those that are nothing on any piece are the number 0.0.
         """
@@ -193,12 +193,12 @@ class Place:
         return values.reshape(table.shape[2:])
 
     def takes_by_row(self, factor: Expression) -> bool:
-        """Whether a factor is an array like the place, of several columns."""
+        """Return whether a factor is an array of several columns, as the place is."""
         of_factor = getattr(factor, "shape", ())
         return not self._in_numbers and of_factor == self._shape and self._shape[1] > 1
 
     def values_of_sum(self, tables: Sequence[Array], factors: Sequence[Expression]) -> Array:
-        """Of a table and others times factors, the same in all columns of a row.
+        """Return a sum of tables times factors, which are the same in all columns of a row.
 
         Tables are summed before the product with the basis: once a row, not at every place. There
         is a factor for every table but the first.

@@ -90,7 +90,7 @@ def off_straight(kinematics: Kinematics, path: Callable[[Array], Array]) -> floa
 
 
 class _Line:
-    """From pose to pose: straight, and turning about one axis."""
+    """A straight line from pose to pose that turns about one axis."""
 
     def __init__(self, begin: Pose, end: Pose) -> None:
         self._begin = begin
@@ -126,7 +126,7 @@ def _newton(kinematics: Kinematics, begin: Array, pose: Pose) -> Array | None:
 
 
 def _reaches(kinematics: Kinematics, begin: Array, place: Array) -> bool:
-    """Whether the link comes to a place from positions nearby, however it turns."""
+    """Return whether the link comes to a place from positions nearby, however it turns."""
     q = begin
     for _ in range(_MOST_NEWTON):
         offset, slopes = kinematics.offset(q, Pose(np.eye(3), place))

@@ -1,4 +1,4 @@
-"""What is read of a URDF: its links and joints, which joints follow others, limits beside it.
+"""Read a URDF: its links and joints, joints that follow others, and limits beside it.
 
 It knows nothing of what bends.
 """

@@ -34,7 +34,7 @@ class Following:
         )
 
     def range_of_leader(self, lower: float, upper: float) -> tuple[float, float]:
-        """Where the leader may be such that the joint is within its own range."""
+        """Return the range of the leader in which the joint is within its own range."""
         if self.multiplier == 0:
             return (-math.inf, math.inf)
         ends = [(end - self.offset) / self.multiplier for end in (lower, upper)]
@@ -42,7 +42,7 @@ class Following:
 
 
 def led_by(urdf: Urdf, joint: str, held: Collection[str] = ()) -> Following:
-    """Which joint leads one in the end, through others that follow; itself where it follows none.
+    """Return the joint that leads one in the end; the joint itself if it follows none.
 
     One that is `held` follows none. Where the last in a chain mimics a joint that the URDF does not
     have, the leader is that one.
@@ -97,7 +97,7 @@ def ranges_of_leaders(
 
 
 def held_position(urdf: Urdf, joint: str, held: Mapping[str, float]) -> float:
-    """Where a joint is that no motor moves: as given, 0, or as the held joint that it follows."""
+    """Return the position of a joint that no motor moves: as given, 0, or as its leader's."""
     following = led_by(urdf, joint, held)
     return following.position(held.get(following.leader, 0.0))
 
@@ -122,7 +122,7 @@ def bounds_of_leaders(
 
 
 def mimics_nothing(urdf: Urdf, joint: str) -> str:
-    """What a joint mimics that the URDF does not have, and the joint that is meant; or nothing."""
+    """Say which missing joint a joint mimics and which may be meant; empty if none."""
     mimic = urdf.joints[joint].mimics if joint in urdf.joints else None
     if mimic is None or mimic.joint in urdf.joints:
         return ""

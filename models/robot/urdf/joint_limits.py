@@ -33,7 +33,7 @@ _ROUNDING = 1e-3
 
 @dataclass(frozen=True)
 class _Bound:
-    """How files of limits call the bounds of a quantity, and what a task calls it.
+    """Names of a quantity's bounds in files of limits, and in a task.
 
     `has` says whether `most` is in force; `least`, if it is there, is the bound the other way.
     """
@@ -46,7 +46,7 @@ class _Bound:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Its entries."""
+        """Names of the entries."""
         return tuple(filter(None, (self.has, self.most, self.least)))
 
 
@@ -148,7 +148,7 @@ def _tables(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _is_of_a_joint(table: Any) -> bool:
-    """Whether something is the table of a joint's limits."""
+    """Return whether something is the table of a joint's limits."""
     return isinstance(table, dict) and not {*_KNOWN}.isdisjoint(map(str, table))
 
 
@@ -269,7 +269,7 @@ class _Entries:
         return lower, upper
 
     def applies(self, has: str, *names: str) -> bool:
-        """Whether bounds are in force: where nothing says so, if they are there."""
+        """Return whether bounds are in force; if nothing says so, whether they are there."""
         stated = self.table.get(has)
         if stated is None:
             return any(self.table.get(name) is not None for name in names)
@@ -298,7 +298,7 @@ class _Entries:
 def _notes(
     path: str | Path, read: _Reader, strangers: list[str], beside: Mapping[str, Any]
 ) -> list[Note]:
-    """What of a file is not used as it stands, in one line each."""
+    """Say in one line each which entries of a file are not used as they stand."""
     notes = list[str]()
     if strangers:
         notes.append(f"limits of joints that the URDF does not have: {listed(strangers)}")

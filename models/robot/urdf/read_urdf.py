@@ -47,7 +47,7 @@ class Inertia:
     moments: Array = field(default_factory=lambda: np.zeros((3, 3)))
 
     def seen_from(self, frame: Frame) -> Inertia:
-        """The same in a frame in which this body's frame stands."""
+        """Return this inertia in a frame in which the body's frame stands."""
         turned = frame.rotation @ self.moments @ frame.rotation.T
         return Inertia(self.mass, frame.point(self.centre), turned)
 
@@ -71,7 +71,7 @@ class Inertia:
 
     @property
     def turns_backwards(self) -> bool:
-        """Whether a moment is below 0 by more than rounding: a torque would turn it backwards."""
+        """Return whether a moment is negative: a torque would turn the body backwards."""
         least, _, most = self.principal
         return least < -_ROUNDED * max(1.0, most)
 
@@ -128,7 +128,7 @@ class UrdfJoint:
 
     @property
     def endless(self) -> bool:
-        """Whether no range binds it."""
+        """Return whether the joint has no range."""
         return self.lower == -math.inf and self.upper == math.inf
 
 
@@ -228,7 +228,7 @@ def _name(element: ElementTree.Element) -> str:
 
 
 def _inertia(link: ElementTree.Element) -> Inertia:
-    """Of a link, in its frame; of none without <inertial>."""
+    """Read the inertia of a link in its frame; zero if it has no <inertial>."""
     inertial = link.find("inertial")
     if inertial is None:
         return Inertia()

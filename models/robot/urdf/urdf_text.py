@@ -112,7 +112,7 @@ def passed_over(text: str) -> list[str]:
 
 
 def _unread(element: ElementTree.Element) -> Iterator[str]:
-    """What an element has that is not read: attributes with numbers, and elements within it."""
+    """List what is not read of an element: attributes with numbers, inner elements."""
     if element.tag in _NUMBERS:
         known = ATTRIBUTES.get(element.tag, ())
         yield from (f"{name} of {element.tag}" for name in element.attrib if name not in known)
@@ -255,7 +255,7 @@ def _refuse_twice(element: ElementTree.Element, owner: ElementTree.Element) -> N
 
 
 def _words(owner: ElementTree.Element) -> str:
-    """What an error calls a robot, link or joint."""
+    """Return the name of a robot, link or joint for an error."""
     if owner.tag == "robot":
         return "the URDF"
     return f"{owner.tag} {quoted(owner.get('name'))} of the URDF"

@@ -7,6 +7,7 @@ from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_f
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.time_front import TIME_AND_ENERGY, time_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
+from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
@@ -45,6 +46,10 @@ _DURATIONS = 9
 """Points of a front of time and energy where none are asked for: each is a robust plan."""
 _SEARCHES = {
     name: f"{name} is a metaheuristic; give quietarm search --method {name}" for name in PRESETS
+} | {
+    f"{name}:{solver}": f"{name}:{solver} names its solver; give --method {name} --solver {solver}"
+    for name in _METHODS
+    for solver in SOLVERS
 }
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS
+from quietarm.metaheuristics.named_method import POLISH
 from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
@@ -56,6 +57,10 @@ _WHERE = {
 }
 _BY_GRADIENT = {
     name: f"{name} is by the gradient; give quietarm {line} {name}" for name, line in _WHERE.items()
+} | {
+    f"{name}{POLISH}": f"{name}{POLISH} is for quietarm bench; polish a front that was found by "
+    "quietarm front --polish FILE"
+    for name in PRESETS
 }
 
 

@@ -76,7 +76,7 @@ OTHERS = {
     "first_velocity": "zero", "variant": "DE/best/2/exp", "scale": 0.6, "jitter": 0,
     "repair": "midway", "delta": 0.01, "objective_crowding": False, "coefficient_crowding": False,
     "replaced": 3, "first_step": 0.3, "step": 1e-5, "continuation": False,
-    "gradient_every": 3, "gradient_points": 4, "gradient_iterations": 2,
+    "gradient_every": 3, "gradient_points": 4, "gradient_iterations": 2, "solver_tolerance": 1e-6,
 }  # fmt: skip
 
 

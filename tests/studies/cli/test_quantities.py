@@ -13,6 +13,7 @@ from quietarm.studies.cli.quantities import (
     parse_energy,
     parse_quantity,
     parse_scales,
+    read_settings,
 )
 
 WHOLE = st.integers(0, 100_000)
@@ -101,3 +102,13 @@ def test_an_energy_is_typed_as_it_is_called(text):
     assert parse_energy(text).label == text
     assert parse_energy(text.replace("*", " * ").replace("+", " + ")) == ENERGIES[text]
     assert parse_energy(text.replace("0.12", "0.0012e+2")) == ENERGIES[text]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("0.25", 0.25), ("25%", 0.25), ("25 %", 0.25), ("3", 3), ("true", True), ("SBX", "SBX")],
+)
+def test_a_setting_is_a_number_a_share_a_flag_or_a_word(text, value):
+    settings = read_settings([("nsga2.crossover", text)])
+    assert settings == {"nsga2.crossover": value}
+    assert type(settings["nsga2.crossover"]) is type(value)

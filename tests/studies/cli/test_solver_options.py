@@ -151,3 +151,43 @@ def test_what_stands_in_has_what_both_have():
 def test_a_record_with_an_option_that_no_solver_has_is_refused():
     with pytest.raises(ValueError, match="sqp has no setting 'solver_haste'"):
         stated_solver({"solver": "sqp", "solver_haste": 3})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("typed", ["25%", "25 %", "0.25"])
+@pytest.mark.usefixtures("made_up")
+def test_a_setting_of_a_bench_is_a_share_in_per_cent_as_well(done, folder, typed):
+    done(
+        "bench single-link-30deg-0.8s-2-terms --methods Epsilon:SQP --runs 1 --quiet "
+        f"--setting epsilon:sqp.points=3 --setting 'epsilon.solver_boldness={typed}' --output b"
+    )
+    (run,) = folder.glob("b/*/epsilon(*)/seed0.json")
+    assert qa.Front.load(run).record.settings["solver_boldness"] == 0.25
+
+
+@pytest.mark.usefixtures("made_up")
+@pytest.mark.parametrize(
+    ("name", "rows"),
+    [
+        ("epsilon", ["points 50: points of the front", "solver_boldness 0.5: How far"]),
+        ("EPSILON:sqp", ["solver_second_order exact: What curvature is."]),
+        ("multistart:ipopt", ["starts 100: random starts", "solver_iterations 500: Most"]),
+        ("nsga2+polish", ["crossover 0.9: share", "solver_boldness 0.5: How far"]),
+        ("memetic", ["gradient_every 10: generations", "solver_boldness 0.5: How far"]),
+    ],
+)
+def test_the_settings_of_a_method_are_listed_with_its_solvers_options(done, name, rows):
+    listed = " ".join(done(f"list {name}").split())
+    assert all(row in listed for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("front single-link --method epsilon:ipopt", "give --method epsilon --solver ipopt"),
+        ("search single-link --method nsga2+polish", "quietarm front --polish FILE"),
+        ("list epsilon:hsl", "unknown solver 'hsl' (known: sqp, ipopt)"),
+    ],
+)
+def test_a_method_that_belongs_elsewhere_says_where(refused, line, told):
+    assert told in refused(line)

@@ -2,9 +2,12 @@
 
 import pytest
 
-from quietarm.metaheuristics.named_method import GRADIENT, NamedMethod
+from quietarm.metaheuristics import PRESETS, Job
+from quietarm.metaheuristics.methods.gradient_methods import gradient_settings
+from quietarm.metaheuristics.named_method import BY_GRADIENT, NamedMethod
+from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.bench.results import derivative_free
-from quietarm.views.report.method_rows import is_gradient, label_of
+from quietarm.views.report.method_rows import GRADIENT_LABELS, is_gradient, label_of
 
 
 @pytest.mark.parametrize(
@@ -54,4 +57,44 @@ def test_a_name_is_read_into_its_parts_and_written_again(name, named):
 
 def test_a_polished_front_is_read_as_a_job_would_be():
     assert str(NamedMethod.read("epsilon, polished")) == "epsilon+polish"
-    assert [name for name in GRADIENT if not NamedMethod.read(name).by_gradient] == []
+
+
+def test_each_solver_may_be_named_and_the_usual_one_need_not():
+    assert tuple(GRADIENT_LABELS) == BY_GRADIENT
+    for method in BY_GRADIENT:
+        assert NamedMethod.admitted(f"{method}:sqp", PRESETS) == NamedMethod(method)
+        for solver in SOLVERS:
+            named = NamedMethod.admitted(f"{method}:{solver}", PRESETS)
+            assert gradient_settings(named)[0].name in ("points", "starts")
+    job = Job("single-link-30deg-0.8s-2-terms", "epsilon:sqp", settings={"points": 3})
+    assert job == Job("single-link-30deg-0.8s-2-terms", "epsilon", settings={"points": 3})
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        ("NSGA-II+polish", "nsga2+polish"),
+        ("Epsilon:SQP.points", "epsilon.points"),
+        ("epsilon:IPOPT.solver_tolerance", "epsilon:ipopt.solver_tolerance"),
+        ("mine: a method", "mine: a method"),
+    ],
+)
+def test_a_name_that_was_typed_is_written_as_it_is_here(typed, name):
+    assert NamedMethod.of_typed(typed, PRESETS) == name
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("epsilon:hsl", r"unknown solver 'hsl' \(known: sqp, ipopt\)"),
+        ("epsilon:ipopt+polish", "is polished already.*; give epsilon:ipopt"),
+        ("nsga2:ipopt", "unknown method 'nsga2:ipopt'"),
+        ("nsga2(population=20)", "unknown method"),
+        ("nsgax", "unknown method 'nsgax'.*NAME:ipopt of the gradient"),
+    ],
+)
+def test_a_name_of_no_job_is_refused_by_every_door(name, told):
+    with pytest.raises(ValueError, match=told):
+        NamedMethod.admitted(name, PRESETS)
+    with pytest.raises(ValueError, match=told):
+        Job("single-link-30deg-0.8s-2-terms", name)
