@@ -14,6 +14,12 @@ from quietarm.ocp import JudgedMotion, Plan
 from quietarm.ocp.planning.move_table import columns_of, times_of
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
+from quietarm.views.formats.deviation import (
+    MOST_POINTS,
+    deviation_of,
+    deviation_words,
+    pieces_through,
+)
 from quietarm.views.tips import tip_words
 
 Array = NDArray[np.float64]
@@ -30,8 +36,28 @@ _TOLD = 1e-3
 
 
 def note_of_rows(plan: Plan, columns: str, rate: float) -> str:
-    """`interpolation_note` of the columns of a table, as typed."""
-    return interpolation_note(plan, rate, tuple(columns_of(columns, plan.task.plant)))
+    """What is to be said of the columns of a table, as typed."""
+    return note_of_points(plan, rate, tuple(columns_of(columns, plan.task.plant)))
+
+
+def note_of_points(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
+    """`interpolation_note`, and how far such a controller is from the plan between the points."""
+    derivatives = _derivatives_in(columns)
+    times = times_of(plan, rate)
+    if derivatives == 0 or len(times) > MOST_POINTS:
+        return interpolation_note(plan, rate, columns)
+    joints = plan.sampled(times).sample.joints
+    given = [np.column_stack([joint[order] for joint in joints]) for order in range(derivatives)]
+    deviation = deviation_of(plan, pieces_through(times, given, derivatives))
+    between = _BETWEEN[derivatives].format(ANGLE.of(plan.task.plant.joint))
+    words = f"between the points, by {between}, {deviation_words(plan, deviation)} off the plan"
+    return "; ".join(filter(None, [interpolation_note(plan, rate, columns), words]))
+
+
+def _derivatives_in(columns: Sequence[str]) -> int:
+    """How many of `OF_POINTS` there are, each only with those before it."""
+    held = [name in columns for name in OF_POINTS]
+    return held.index(False) if False in held else len(held)
 
 
 def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
@@ -48,9 +74,7 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
     columns : sequence of str
         What a row has, by the names of a table.
     """
-    derivatives = 0
-    while derivatives < len(OF_POINTS) and OF_POINTS[derivatives] in columns:
-        derivatives += 1
+    derivatives = _derivatives_in(columns)
     if derivatives == 0:
         return ""
     wanted = max(plan.residual, plan.residual_limit or 0.0)
