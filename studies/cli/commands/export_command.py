@@ -33,6 +33,10 @@ from quietarm.views.formats.formats import write_in
 from quietarm.views.report.saving import STDOUT, File
 
 
+_USUAL = "csv"
+"""The format of standard output unless another is given."""
+
+
 def _to_stdout() -> list[str]:
     """The formats that can go to standard output."""
     return [form.name for form in known_formats().values() if form.to_stdout]
@@ -75,7 +79,7 @@ class ExportCommand(Command):
 
 def _format_option() -> click.Option:
     """--format, of standard output."""
-    words = f"The format of standard output. [default: {_to_stdout()[0]}]"
+    words = f"The format of standard output. [default: {_USUAL}]"
     none = {form.name: _not_to_stdout(form) for form in known_formats().values()}
     return option("--format", "form", type=Named("format", _to_stdout, none), help=words)
 
@@ -204,7 +208,7 @@ def _format(given: Given) -> ExportFormat:
     if given.output != STDOUT:
         given.refuse(["form"], "is for --output - alone: a file's ending says its format")
         return format_of(given.output)
-    return known_formats()[given.form or _to_stdout()[0]]
+    return known_formats()[given.form or _USUAL]
 
 
 def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:
