@@ -101,7 +101,7 @@ class CamTable(ExportFormat):
     endings = (".cam",)
     meaning = "a cam table"
     settings = (
-        ExportSetting("layout", "table", f"Of {joined(_LAYOUTS, 'or')}."),
+        ExportSetting("layout", "table", f"The layout: {joined(_LAYOUTS, 'or')}."),
         ExportSetting("points", 201, "Points of the cam, both ends included.", 5, 10_000),
         ExportSetting(
             "master", None, "How far the master moves; by default the duration in s.", 1e-6, 1e9,

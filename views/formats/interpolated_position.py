@@ -55,7 +55,7 @@ class InterpolatedPosition(ExportFormat):
     endings = (".cia402",)
     meaning = "records of CiA 402's interpolated position mode"
     settings = (
-        ExportSetting("period", 0.001, "Time between two records, 60C2h.", 1e-4, 0.255, unit="s"),
+        ExportSetting("period", 0.001, "Period of the records, 60C2h [s].", 1e-4, 0.255, unit="s"),
         ExportSetting(
             "increments", 1e6, "Increments of the drive in a rad, or in a m of a joint that "
             "slides.", 1e-3, 1e12,
