@@ -1,4 +1,4 @@
-"""Text from files on its way into C, Structured Text, csv, YAML, JavaScript, Markdown, HTML and a terminal.
+"""Text from files on its way into other formats, from C to HTML, and into a terminal.
 
 A name in a URDF may hold anything. Whatever writes such a text takes the function of its format,
 so that a reader of that format finds the text again and nothing else.

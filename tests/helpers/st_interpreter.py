@@ -19,16 +19,17 @@ TOKEN = re.compile(
     r"|(?P<sign>:=|<=|>=|<>|\.\.|[-+*/<>=()\[\];:,])",
     re.S,
 )
-RESERVED = set(
-    "abs acos action add and any array asin at atan bool by byte case concat configuration "
-    "constant continue cos ctd ctu date delete dint div do dword else elsif en end_for end_if eno "
-    "eq exit exp expt f_edge f_trig false find for from function function_block ge gt if initial "
-    "insert int interval le left len limit lint ln log lreal lt lword max mid min mod move mul mux "
-    "ne not of on or pt program r_edge r_trig real repeat replace resource retain return right rol "
-    "ror rs sel shl shr sin single sint sqrt sr step string struct sub tan task then time to tod "
-    "tof ton tp transition true trunc type udint uint ulint until usint var var_input var_output "
-    "while with word wstring xor et q in".split()
-)
+KEYWORDS = """
+    abs acos action add and any array asin at atan bool by byte case concat configuration constant
+    continue cos ctd ctu date delete dint div do dword else elsif en end_for end_if eno eq exit
+    exp expt f_edge f_trig false find for from function function_block ge gt if initial insert int
+    interval le left len limit lint ln log lreal lt lword max mid min mod move mul mux ne not of
+    on or pt program r_edge r_trig real repeat replace resource retain return right rol ror rs sel
+    shl shr sin single sint sqrt sr step string struct sub tan task then time to tod tof ton tp
+    transition true trunc type udint uint ulint until usint var var_input var_output while with
+    word wstring xor et q in
+"""
+RESERVED = {*KEYWORDS.split()}
 """Words that no variable may have: keywords, standard functions and blocks."""
 FUNCTIONS = {
     "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos,
@@ -81,7 +82,7 @@ class Block:
         return self.tokens[self.place - 1]
 
     def _expect(self, text):
-        kind, found = self._take()
+        _, found = self._take()
         assert found.lower() == text, f"{found!r} where {text!r} is due"
 
     def _word(self):

@@ -12,8 +12,15 @@ from quietarm.models import Expression, JointMotion
 from quietarm.models.dimensions import ANGLE
 from quietarm.ocp import JudgedMotion, Plan
 from quietarm.ocp.planning.move_table import columns_of, times_of
-from quietarm.ocp.profiles.free_motion import PiecewiseMotion
+from quietarm.ocp.profiles.free_motion import FreeMotion, PiecewiseMotion
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
+from quietarm.views.formats.deviation import (
+    LINEAR,
+    MOST_POINTS,
+    deviation_of,
+    deviation_words,
+    pieces_through,
+)
 from quietarm.views.tips import tip_words
 
 Array = NDArray[np.float64]
@@ -30,8 +37,28 @@ _TOLD = 1e-3
 
 
 def note_of_rows(plan: Plan, columns: str, rate: float) -> str:
-    """`interpolation_note` of the columns of a table, as typed."""
-    return interpolation_note(plan, rate, tuple(columns_of(columns, plan.task.plant)))
+    """What is to be said of the columns of a table, as typed."""
+    return note_of_points(plan, rate, tuple(columns_of(columns, plan.task.plant)))
+
+
+def note_of_points(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
+    """`interpolation_note`, and how far such a controller is from the plan between the points."""
+    derivatives = _derivatives_in(columns)
+    times = times_of(plan, rate)
+    if derivatives == 0 or len(times) > MOST_POINTS:
+        return interpolation_note(plan, rate, columns)
+    joints = plan.sampled(times).sample.joints
+    given = [np.column_stack([joint[order] for joint in joints]) for order in range(derivatives)]
+    deviation = deviation_of(plan, pieces_through(times, given, derivatives))
+    between = _BETWEEN[derivatives].format(ANGLE.of(plan.task.plant.joint))
+    words = f"between the points, by {between}, {deviation_words(plan, deviation)} off the plan"
+    return "; ".join(filter(None, [interpolation_note(plan, rate, columns), words]))
+
+
+def _derivatives_in(columns: Sequence[str]) -> int:
+    """How many of `OF_POINTS` there are, each only with those before it."""
+    held = [name in columns for name in OF_POINTS]
+    return held.index(False) if False in held else len(held)
 
 
 def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
@@ -48,9 +75,7 @@ def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POIN
     columns : sequence of str
         What a row has, by the names of a table.
     """
-    derivatives = 0
-    while derivatives < len(OF_POINTS) and OF_POINTS[derivatives] in columns:
-        derivatives += 1
+    derivatives = _derivatives_in(columns)
     if derivatives == 0:
         return ""
     wanted = max(plan.residual, plan.residual_limit or 0.0)
@@ -84,20 +109,52 @@ def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
         How many of angle, speed and acceleration the points have: a clamped cubic spline goes
         through angles alone; else the pieces are Hermite's, of third and fifth degree.
     """
-    from scipy.interpolate import BPoly, CubicSpline, PPoly  # slow to load
-
     times = times_of(plan, rate)
     along = plan.sampled(times).sample.path
-    joint = np.column_stack(along[:derivatives])
-    if derivatives == 1:
-        pieces = CubicSpline(times, joint[:, 0], bc_type="clamped")
-    else:
-        pieces = PPoly.from_bernstein_basis(BPoly.from_derivatives(times, joint))
-    table = np.vstack([pieces.c, np.diff(times)])
+    return residual_through(plan, times, [np.asarray(values) for values in along[:3]], derivatives)
+
+
+def residual_through(plan: Plan, times: Array, along: Sequence[Array], interpolation: int) -> float:
+    """The residual of a motion interpolated between set points along the path, by CVODES [m].
+
+    Parameters
+    ----------
+    plan : Plan
+        The move.
+    times : ndarray
+        When the set points hold [s].
+    along : sequence of ndarray, shape (times,)
+        Their places on the path, then speeds and accelerations as far as they are needed.
+    interpolation : int
+        One of those of `pieces_through`. Between straight lines the speed turns within an eighth
+        of the time between two set points.
+    """
+    task = replace(plan.task, start=float(along[0][0]), target=float(along[0][-1]))
+    if interpolation == LINEAR:
+        free = _with_corners(times, along[0])
+        task = replace(task, duration=float(free.times[-1]))
+        return JudgedMotion(task, PiecewiseMotion.of_free_motion(task, free)).residual
+    pieces = pieces_through(times, [values[:, None] for values in along], interpolation)
+    table = np.vstack([pieces.c[:, :, 0], np.diff(times)])
     remedy = "; give a higher --rate"
-    path = PiecewiseMotion(_polynomial, table, derivatives == len(OF_POINTS), False, remedy)
-    task = replace(plan.task, duration=float(times[-1]))
+    path = PiecewiseMotion(_polynomial, table, interpolation == len(OF_POINTS), False, remedy)
+    task = replace(task, duration=float(times[-1]))
     return JudgedMotion(task, path).residual
+
+
+def _with_corners(times: Array, places: Array) -> FreeMotion:
+    """Straight lines between set points, whose speed turns within a short time at each of them."""
+    lengths = np.diff(times)
+    speeds = np.concatenate([[0.0], np.diff(places) / lengths, [0.0]])
+    turn = lengths.min() / 8
+    accelerations = np.diff(speeds) / turn
+    # a turn around every set point, which makes the whole longer by one turn
+    spans = np.empty(2 * len(lengths) + 1)
+    spans[0::2] = turn
+    spans[1::2] = lengths - turn
+    acceleration = np.zeros_like(spans)
+    acceleration[0::2] = accelerations
+    return FreeMotion(np.append(0.0, np.cumsum(spans)), acceleration, np.zeros_like(spans))
 
 
 def _polynomial(given: Sequence[Expression], fraction: Expression, *, jerk: bool) -> JointMotion:

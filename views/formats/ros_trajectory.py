@@ -9,7 +9,7 @@ import numpy as np
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import yaml_string
 from quietarm.ocp.planning.move_table import times_of
-from quietarm.views.formats.between_rows import interpolation_note
+from quietarm.views.formats.between_rows import note_of_points
 from quietarm.views.formats.export_format import ExportFormat, ExportSetting
 from quietarm.views.formats.row_settings import RATE
 from quietarm.views.report.templates import templates
@@ -45,7 +45,7 @@ class RosTrajectory(ExportFormat):
 
     def note(self, plan: Plan, *args: Any, rate: float, **others: Any) -> str:
         """Say what the controller leaves, which takes a quintic between two points."""
-        return interpolation_note(plan, rate)
+        return note_of_points(plan, rate)
 
 
 def _decimal(value: float) -> str:

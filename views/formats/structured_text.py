@@ -114,8 +114,8 @@ def _block(plan: Plan, name: str, real: str) -> str:
         name=name, title=title_of(plan), figures=figures_of(plan), real=real, size=size,
         version=plan.record.versions.get("quietarm", ""), start=start, target=target,
         joints=[(joint, WAY.of(kind)) for joint, kind in zip(plant.joint_names, plant.joint_kinds)],
-        coefficients=list(plan.coefficients) or [0.0], move=dict(zip(_MOVE, task.move)), statements=statements,
-        variables=variables,
+        coefficients=list(plan.coefficients) or [0.0], move=dict(zip(_MOVE, task.move)),
+        statements=statements, variables=variables,
     )  # fmt: skip
 
 

@@ -32,6 +32,9 @@ from quietarm.views.formats.export_format import (
 from quietarm.views.formats.formats import write_in
 from quietarm.views.report.saving import STDOUT, File
 
+_USUAL = "csv"
+"""The format of standard output unless another is given."""
+
 
 def _to_stdout() -> list[str]:
     """The formats that can go to standard output."""
@@ -75,7 +78,7 @@ class ExportCommand(Command):
 
 def _format_option() -> click.Option:
     """--format, of standard output."""
-    words = f"The format of standard output. [default: {_to_stdout()[0]}]"
+    words = f"The format of standard output. [default: {_USUAL}]"
     none = {form.name: _not_to_stdout(form) for form in known_formats().values()}
     return option("--format", "form", type=Named("format", _to_stdout, none), help=words)
 
@@ -123,7 +126,7 @@ def _help_line(setting: ExportSetting, names: Sequence[str]) -> str:
     """Return the meaning of a setting for some formats, with its default."""
     default = setting.default
     words = "" if default is None else f"{default:g}" if isinstance(default, float) else default
-    ending = f" [default: {words}]" if default is not None else ""
+    ending = f" [default: {words}]" if default not in (None, "") else ""
     return f"{', '.join(names)}: {setting.meaning}{ending}"
 
 
@@ -141,9 +144,10 @@ def _metavar(settings: Sequence[tuple[str, ExportSetting]]) -> str:
 def export(given: Given) -> None:
     """Write a saved PLAN for a controller, as a film or as a page.
 
-    The C source gives angle, speed and acceleration at any time from the coefficients, with nothing
-    but math.h. The PLAN may be the dataset of quietarm sweep, whose moves are written as C with the
-    interpolation between them.
+    C source and Structured Text give angle, speed and acceleration at any time from the
+    coefficients, the C with nothing but math.h. The PLAN may be the dataset of quietarm sweep,
+    whose moves are written as C with the interpolation between them. Of tables, trajectories, cams
+    and records a line says how far an interpolation between their points is from the plan at most.
 
     A film shows several PLANs side by side on one clock, one alone beside the plain cycloid of its
     move. Links bend as their modes do; the picture says how far that is exaggerated. An mp4 needs
@@ -159,6 +163,9 @@ def export(given: Given) -> None:
       quietarm export plan.json --output move.c
       quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
       quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
+      quietarm export plan.json --output move.st
+      quietarm export plan.json --output move.cam --layout codesys --unit deg
+      quietarm export plan.json --output move.cia402 --increments-per-revolution 1e6 --period 2ms
       quietarm export plan.json --output - --columns time,angle:deg
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
@@ -204,7 +211,7 @@ def _format(given: Given) -> ExportFormat:
     if given.output != STDOUT:
         given.refuse(["form"], "is for --output - alone: a file's ending says its format")
         return format_of(given.output)
-    return known_formats()[given.form or _to_stdout()[0]]
+    return known_formats()[given.form or _USUAL]
 
 
 def _settings(given: Given, form: ExportFormat) -> dict[str, Any]:

@@ -122,6 +122,24 @@ def test_structured_text_holds_the_names_in_comments_and_runs_nothing_else(plan,
         assert f"(* joint {number}: {st_comment(name)} [rad] *)\n" in text
 
 
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("name", ["move.cam", "move.cia402"])
+def test_records_and_cams_have_the_names_in_a_heading_that_is_no_formula(plan, tmp_path, name):
+    settings = {"period": 0.2} if name == "move.cia402" else {"points": 5}
+    export_plan(plan, tmp_path / name, **settings)
+    with open(tmp_path / name, newline="", encoding="utf-8") as file:
+        lines = list(file)
+    # what is no row is a comment in one line
+    header = [line for line in lines if line.startswith("# ")]
+    heading, *rows = csv.reader(line for line in lines if line not in header)
+    assert len(header) == (4 if name == "move.cia402" else 0)
+    assert not [cell for cell in heading if re.match(r"\s*[=+\-@\t\r\uff1d\uff0b]", cell)]
+    ending = " 60C1h:01 position" if name == "move.cia402" else "_angle_rad"
+    stems = [cell.removesuffix(ending) for cell in heading if cell.endswith(ending)]
+    assert [stem.removeprefix("'") for stem in stems] == NAMES
+    assert {len(row) for row in rows} == {len(heading)}
+
+
 def test_no_title_ends_a_comment_of_structured_text():
     for title in [LABEL, *NAMES, "(*)", "*)(*", "(*(*"]:
         words = st_comment(title)

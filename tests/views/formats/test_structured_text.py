@@ -75,9 +75,7 @@ def test_real_numbers_of_a_small_plc(tmp_path):
     rows = np.array([as_row(block(Execute=True, TimeStep=1e-3))[3:] for _ in range(801)])
     expected = plan.sampled(np.arange(801) / 1000).joint
     # 24 bits, and some tens of operations
-    assert np.abs(rows - expected).max(axis=0) == pytest.approx(
-        [0, 0, 0], abs=2e-6 * np.abs(expected).max()
-    )
+    assert (abs(rows - expected).max(axis=0) <= 2e-6 * abs(expected).max(axis=0)).all()
     with pytest.raises(ValueError, match="real is 'DOUBLE'; give LREAL or REAL"):
         export_plan(plan, tmp_path / "other.st", real="DOUBLE")
 

@@ -8,7 +8,7 @@ from quietarm.views.formats.export_format import known_formats
 
 
 def rows_of_formats():
-    """The table of docs/moves.md, from what every format says of itself."""
+    """The table of docs/controllers.md, from what every format says of itself."""
     yield "| File | Contents | Written from | Settings |"
     yield "|---|---|---|---|"
     for form in known_formats().values():
@@ -19,7 +19,7 @@ def rows_of_formats():
 
 
 def test_the_docs_list_the_formats():
-    (table,) = re.findall(r"^\| File \| Contents .*?(?=\n\n)", PAGES["moves"], re.M | re.S)
+    (table,) = re.findall(r"^\| File \| Contents .*?(?=\n\n)", PAGES["controllers"], re.M | re.S)
     assert table.splitlines() == list(rows_of_formats())
 
 

@@ -16,6 +16,7 @@ from quietarm.studies.compare.compared_motions import ComparedMotion
 from quietarm.studies.compare.plan_comparison import motions_table
 from quietarm.views import pictures
 from quietarm.views.formats.csv_rows import CsvRows
+from quietarm.views.formats.formats import export_plan
 from quietarm.views.report.plan_rows import plan_rows
 from quietarm.views.report.robot_rows import robot_rows
 
@@ -125,6 +126,26 @@ def test_columns_of_a_mixed_robot(plan_of, tmp_path):
     assert header[2:7:2] == [
         "radial-axis_angle_rad", "radial-axis_speed_rad_s", "radial-axis_acceleration_rad_s2",
     ]  # fmt: skip
+
+
+def test_cams_and_records_of_a_mixed_robot_have_the_units_of_each_joint(plan_of, tmp_path):
+    plan = plan_of(MIXED)
+    export_plan(plan, tmp_path / "a.cam", unit="deg", points=5)
+    heading = _headings((tmp_path / "a.cam").read_text())
+    assert heading[1::3] == ["x_position_m", "radial-axis_angle_deg"]
+    turn = 4096
+    records = {"increments": 1e6, "increments_per_revolution": turn, "period": 0.1}
+    export_plan(plan, tmp_path / "a.cia402", **records)
+    *_, last = (tmp_path / "a.cia402").read_text().splitlines()
+    # 700 mm and 0.9 rad
+    assert last.split(",")[1:] == ["700000", str(round(0.9 * turn / (2 * np.pi)))]
+    told = (tmp_path / "a.cia402").read_text()
+    assert " m (proven; sampled " in told
+    assert " rad (proven; sampled " in told
+    export_plan(plan, tmp_path / "a.st")
+    block = (tmp_path / "a.st").read_text()
+    assert "joint 1: x [m] *)" in block
+    assert "joint 2: radial-axis [rad] *)" in block
 
 
 @pytest.mark.parametrize(("urdf", "columns", "words"), [
