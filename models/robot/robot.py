@@ -62,6 +62,7 @@ from quietarm.models.robot.on_path.path_tables import (
 from quietarm.models.robot.on_path.stick_figure import stick_figure_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
+from quietarm.models.robot.path.straight_line import tip_beside_lines
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.robot_notes import notes_of, notes_of_text
 from quietarm.models.robot.text_files import read_text
@@ -292,6 +293,14 @@ class Robot(MovingRobot):
                     "path within it"
                 )
         return path
+
+    @interruptible
+    def off_straight(self, path: GeometricPath) -> float:
+        """How far the tip, if nothing bends, leaves where straight lines of the joints lead it [m].
+
+        These are the lines between the path's waypoints; 0 of a path without.
+        """
+        return tip_beside_lines(self.kinematics(self.tip), *path.beside_lines)
 
     def _with_followers(self, joint: str) -> str:
         """Words on the joints that follow one, whose ranges bind it as well."""

@@ -17,6 +17,7 @@ from quietarm.studies.cli.options import (
     BOUND,
     LINE,
     OBJECTIVES,
+    PATH_TOLERANCE,
     SENSITIVITIES,
     TASK,
     busy,
@@ -50,6 +51,7 @@ def _coefficients(text: str) -> list[float] | Path:
            "motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
     option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
            "place of start, target and duration; of a robot its waypoints."),
+    PATH_TOLERANCE,
     *LINE,
     BOUND,
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
