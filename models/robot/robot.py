@@ -294,6 +294,18 @@ class Robot(MovingRobot):
                 )
         return path
 
+    def check_positions(self, points: Array) -> None:
+        """Refuse positions of the driven joints, a row a point, beyond the range of one."""
+        for name, (least, most), column in zip(self.joints, self.ranges(), points.T):
+            beyond = np.maximum(column - most, least - column)
+            if beyond.max() > _OVER:
+                at = int(beyond.argmax())
+                raise ValueError(
+                    f"joint {quoted(name)} is at {column[at]:.5g} at point {at + 1} of "
+                    f"{len(points)}; its range is {least:g} to {most:g}"
+                    f"{self._with_followers(name)}, give positions within it"
+                )
+
     @interruptible
     def off_straight(self, path: GeometricPath) -> float:
         """How far the tip, if nothing bends, leaves where straight lines of the joints lead it [m].

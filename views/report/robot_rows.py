@@ -187,8 +187,9 @@ def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
         return rows
     (size, unit, name), *others = seen
     less = ", ".join(f"{other} {smaller:.2g} {own}" for smaller, own, other in others)
+    what = "path" if path.lines else "spline"
     words = (
-        f"the path is up to {size:.2g} {unit} from the straight lines between waypoints, at "
+        f"the {what} is up to {size:.2g} {unit} from the straight lines between waypoints, at "
         f"joint {name}{f' ({less})' if less else ''}, and the tip "
         f"{1e3 * robot.off_straight(path):.2g} mm"
     )

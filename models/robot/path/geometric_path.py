@@ -45,6 +45,8 @@ _SAME = 1e-7
 _DEGREES = (3, 5)
 MOST_WAYPOINTS = 200
 """Of a spline; of more some are taken."""
+_FEW = 20
+"""Waypoints that somebody chose, and all of which a spline passes if it may."""
 MOST_POINTS = 20_000
 """Of which these may be taken."""
 USUAL_TOLERANCE = 5e-4
@@ -302,8 +304,8 @@ class GeometricPath:
     ) -> GeometricPath:
         """Within a tolerance of the straight lines between waypoints, of which there may be many.
 
-        The spline of `through` where it is near enough; or else one through as few of the points as
-        keep it so; or else the straight lines themselves, their corners rounded. Which of these it
+        Of up to twenty waypoints the spline of `through` where it is near enough; or else one
+        through as few of the points as keep it so; or else the straight lines themselves, their corners rounded. Which of these it
         is, `remarks` says.
 
         Parameters
@@ -320,7 +322,7 @@ class GeometricPath:
         """
         tolerance = positive("tolerance of the path", tolerance, "rad or m")
         points = _rows(waypoints, most=MOST_POINTS)
-        if len(points) <= MOST_WAYPOINTS:
+        if len(points) <= _FEW:
             path = cls.through(points, degree=degree, joints=joints)
             if path.off_straight.max() <= tolerance:
                 return path

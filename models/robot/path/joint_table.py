@@ -76,9 +76,7 @@ def _trajectory_of(path: str | Path) -> JointTable:
         )
     positions = _entries(points, "positions")
     if positions is None:
-        raise ValueError(
-            f"path {path} has a point without positions of all joints; write it again"
-        )
+        raise ValueError(f"path {path} has a point without positions of all joints; write it again")
     others = {entry for point in points for entry, value in point.items() if value}
     unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
     remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []

@@ -122,7 +122,9 @@ def fewest_within(
     between = (places[1:] + places[:-1]) / 2
     checked = np.sort(np.concatenate([places, between]))
     along = np.column_stack([np.interp(checked, places, column) for column in points.T])
-    kept = np.unique(np.searchsorted(places, np.linspace(0.0, 1.0, _FIRST)).clip(max=len(points) - 1))
+    kept = np.unique(
+        np.searchsorted(places, np.linspace(0.0, 1.0, _FIRST)).clip(max=len(points) - 1)
+    )
     while len(kept) <= most:
         off = np.abs(spline(places[kept], points[kept])(checked) - along).max(axis=1)
         if off.max() <= tolerance:

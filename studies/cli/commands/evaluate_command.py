@@ -9,6 +9,7 @@ import click
 from quietarm.machine.tables.table import TABLES
 from quietarm.models import Robot
 from quietarm.ocp import evaluate_coefficients
+from quietarm.ocp.planning.as_timed import WINDOW, evaluate_as_timed
 from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies.cli.commands.plan_command import FoundMotion, finish_motion
@@ -33,11 +34,13 @@ from quietarm.studies.cli.outputs import (
     output_option,
     refuse_formats,
 )
+from quietarm.studies.cli.plants import choose_kind
 from quietarm.studies.cli.quantities import parse_coefficients
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.plan_rows import path_rows
+from quietarm.views.report.timed_rows import timed_rows
 
 
 def _coefficients(text: str) -> list[float] | Path:
@@ -57,6 +60,8 @@ def _coefficients(text: str) -> list[float] | Path:
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
     OBJECTIVES,
     SENSITIVITIES,
+    option("--as-timed", is_flag=True, help="Judge the trajectory of --path with its own times: "
+           "what it takes and leaves, and what makes it ring."),
     output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
                    PICTURE: "a picture"}, formats=["plan", "front"]),
 )  # fmt: skip
@@ -72,10 +77,13 @@ def evaluate(given: Given) -> None:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
       quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
       quietarm evaluate flexible-beam --set omega=3.2Hz --path recorded.csv
+      quietarm evaluate ur5_bar.yaml --path trajectory.yaml --as-timed
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients results.csv \\
           --output front.json --output front.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    if given.path is not None and not isinstance(given.plant, Robot):
+    if given.as_timed:
+        _evaluate_as_timed(given)
+    elif given.path is not None and not isinstance(given.plant, Robot):
         _evaluate_path(given)
     elif isinstance(given.coefficients, Path):
         _evaluate_table(given)
@@ -112,6 +120,22 @@ def _evaluate_path(given: Given) -> None:
     with busy("integrating"):
         rows = path_rows(task, recorded)
     finish([], rows, *recorded.notes)
+
+
+def _evaluate_as_timed(given: Given) -> None:
+    """The figures of a robot's trajectory with its own times."""
+    robot = choose_kind(given.plant, given.plant_file)
+    if not isinstance(robot, Robot) or given.path is None:
+        raise ValueError(
+            "--as-timed is for the trajectory of a robot; give its file and --path trajectory.yaml"
+        )
+    kept = {"plant", "path", "as_timed", "residual_window", "energy"}
+    given.refuse_others(kept, "is not for a trajectory with its own times")
+    window = given.residual_window if given.typed("residual_window") else WINDOW
+    with busy("integrating"):
+        answer = evaluate_as_timed(robot, given.path, residual_window=window, energy=given.energy)
+        rows = timed_rows(answer)
+    finish([], rows)
 
 
 def _evaluate_table(given: Given) -> None:
