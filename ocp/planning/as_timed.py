@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from quietarm.models.robot.on_path.full import RobotInTime
 from quietarm.models.robot.path.geometric_path import USUAL_TOLERANCE
 from quietarm.models.robot.path.timed_motion import TimedMotion
 from quietarm.ocp.checks import instance, positive
-from quietarm.ocp.energy import AbsolutePower, Energy
+from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.errors import QuietarmError
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.plan_move import plan_move
@@ -49,6 +49,8 @@ class TimedAnswer:
         By quantity, torque, speed, acceleration and jerk: the largest size of each joint.
     swings : sequence of (float, float)
         Frequency [rad/s] of every mode after arrival, and how far the tip swings by it [m].
+    stiffness, payload : float
+        Multiples of the robot's.
     """
 
     robot: Robot
@@ -57,6 +59,8 @@ class TimedAnswer:
     residual: float
     peaks: Mapping[str, Array]
     swings: Sequence[tuple[float, float]]
+    stiffness: float = 1.0
+    payload: float = 1.0
 
     @cached_property
     def path(self) -> GeometricPath:
@@ -66,8 +70,9 @@ class TimedAnswer:
     @cached_property
     def cycloid(self) -> Plan:
         """The plain cycloid along the same path in the same time."""
-        task = self.robot.task(self.path, self.motion.duration)
-        return evaluate_coefficients(task, [])
+        plant = self.robot.along(self.path)
+        plant = replace(plant, stiffness=self.stiffness, payload=self.payload)
+        return evaluate_coefficients(plant.task(1.0, self.motion.duration), [])
 
     @cached_property
     def plan(self) -> Plan:
@@ -115,8 +120,8 @@ class TimedAnswer:
             return "that is still"
         if left > _SHARE * self.residual:
             return (
-                f"a resonance: the plain cycloid, as smooth as can be, leaves {_mm(left)} along the "
-                f"same path, since the move takes {swings:.2g} swings"
+                f"a resonance: the plain cycloid, as smooth as can be, leaves {_mm(left)} along "
+                f"the same path, since the move takes {swings:.2g} swings"
             )
         size, joint, time = self.largest_step
         jerk = self.peaks["jerk"]
@@ -162,7 +167,9 @@ def evaluate_as_timed(
     trajectory: TimedMotion | str | Path,
     *,
     residual_window: float = WINDOW,
-    energy: Energy = AbsolutePower(),
+    energy: Energy = ABSOLUTE_POWER,
+    stiffness: float = 1.0,
+    payload: float = 1.0,
 ) -> TimedAnswer:
     """Judge a robot's trajectory as it is timed.
 
@@ -176,6 +183,8 @@ def evaluate_as_timed(
         How long the tip is looked at after arrival [s].
     energy : Energy
         What counts as energy.
+    stiffness, payload : float
+        Multiples of the robot's, as of `RobotOnPath`.
 
     Raises
     ------
@@ -189,7 +198,7 @@ def evaluate_as_timed(
     motion = trajectory if isinstance(trajectory, TimedMotion) else TimedMotion.load(trajectory)
     motion = motion.of_joints(robot.joints)
     robot.check_positions(motion.points)
-    equations = RobotInTime(robot.finer)
+    equations = RobotInTime(robot.finer, stiffness, payload)
     figures = _followed(equations, motion, window, energy)
     swings = equations.swings(motion.points[-1], figures.arrival)
     shares = np.linspace(0.0, 1.0, _SAMPLES)
@@ -204,6 +213,8 @@ def evaluate_as_timed(
         figures.residual,
         {"torque": figures.peak_torques, **peaks},
         swings,
+        stiffness,
+        payload,
     )
 
 

@@ -84,9 +84,13 @@ def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
         How many of angle, speed and acceleration the points have: a clamped cubic spline goes
         through angles alone; else the pieces are Hermite's, of third and fifth degree.
     """
+    return residual_at(plan, times_of(plan, rate), derivatives)
+
+
+def residual_at(plan: Plan, times: Array, derivatives: int) -> float:
+    """The same between points at these times, from 0 to the end of the move or later."""
     from scipy.interpolate import BPoly, CubicSpline, PPoly  # slow to load
 
-    times = times_of(plan, rate)
     along = plan.sampled(times).sample.path
     joint = np.column_stack(along[:derivatives])
     if derivatives == 1:

@@ -305,8 +305,8 @@ class GeometricPath:
         """Within a tolerance of the straight lines between waypoints, of which there may be many.
 
         Of up to twenty waypoints the spline of `through` where it is near enough; or else one
-        through as few of the points as keep it so; or else the straight lines themselves, their corners rounded. Which of these it
-        is, `remarks` says.
+        through as few of the points as keep it so; or else the straight lines themselves, their
+        corners rounded. Which of these it is, `remarks` says.
 
         Parameters
         ----------

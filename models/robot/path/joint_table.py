@@ -14,6 +14,9 @@ import numpy as np
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.text_files import read_text, read_yaml
 
+_MESSAGES = (".yaml", ".yml", ".json", ".moveit")
+"""Endings of files in YAML, of which JSON is a part."""
+
 
 @dataclass(frozen=True, eq=False)
 class JointTable:
@@ -49,7 +52,7 @@ def read_joint_table(path: str | Path) -> JointTable:
     ValueError
         When it has none, several, or a point without positions of all joints.
     """
-    if Path(path).suffix.lower() in (".yaml", ".yml", ".json"):
+    if Path(path).suffix.lower() in _MESSAGES:
         return _trajectory_of(path)
     return _table_of(path)
 

@@ -180,7 +180,7 @@ def rounded_lines(points: Array, tolerance: float) -> Piecewise:
 
 
 def _rise(share: Array) -> Array:
-    """Integral of the smooth step of fifth degree, whose first two derivatives are 0 at its ends."""
+    """Integral of the smooth step of fifth degree, whose first two derivatives begin with 0."""
     return share**6 - 3 * share**5 + 2.5 * share**4
 
 

@@ -1,4 +1,4 @@
-"""A trajectory as it is timed: positions of joints by time, as a controller makes them of points."""
+"""A trajectory as it is timed: positions of joints by time, as a controller joins points."""
 
 from __future__ import annotations
 
@@ -74,7 +74,9 @@ class TimedMotion:
             coefficients = _cubic(times, points, speeds)
             remarks.append("without accelerations its points are joined by cubics")
             return cls(table.joints, times, coefficients, points, tuple(remarks))
-        kept = _joined(times, points, speeds, accelerations)
+        reach = _SAME * np.maximum(np.ptp(points, axis=0), 1e-3)
+        fast = _OF_SPEEDS * _SAME * np.maximum(np.abs(speeds).max(axis=0), 1e-3)
+        kept = fewest_points(times, points, speeds, accelerations, reach, fast)
         moving = [values[kept] for values in (points, speeds, accelerations)]
         return cls(
             table.joints, times[kept], _quintic(times[kept], *moving), points, tuple(remarks)
@@ -116,7 +118,7 @@ class TimedMotion:
         )
 
     def at(self, shares: Array, order: int = 0) -> Array:
-        """Values or derivatives by time at shares of every piece, shape (pieces, shares, joints)."""
+        """Values or derivatives by time at shares of pieces, shape (pieces, shares, joints)."""
         terms = self.coefficients
         for _ in range(order):
             terms = terms[..., 1:] * np.arange(1, terms.shape[-1]) / self.lengths[:, None, None]
@@ -125,7 +127,7 @@ class TimedMotion:
 
     @property
     def steps(self) -> Array:
-        """By how much accelerations jump at the ends of pieces, from and to rest, shape (ends, joints)."""
+        """By how much accelerations jump where pieces meet, and from and to rest, by joint."""
         ends = self.at(np.array([0.0, 1.0]), 2)
         nothing = np.zeros((1, ends.shape[2]))
         return np.concatenate([ends[:, 0], nothing]) - np.concatenate([nothing, ends[:, 1]])
@@ -195,10 +197,18 @@ def _quintic(times: Array, points: Array, speeds: Array, accelerations: Array) -
     ], axis=-1)  # fmt: skip
 
 
-def _joined(times: Array, points: Array, speeds: Array, accelerations: Array) -> list[int]:
-    """Numbers of the points between which polynomials pass all others, as few as do."""
-    reach = _SAME * np.maximum(np.ptp(points, axis=0), 1e-3)
-    fast = _SAME * np.maximum(np.abs(speeds).max(axis=0), 1e-3) * _OF_SPEEDS
+def fewest_points(
+    times: Array,
+    points: Array,
+    speeds: Array,
+    accelerations: Array,
+    reach: float | Array,
+    fast: float | Array = np.inf,
+) -> list[int]:
+    """Numbers of the points between which quintics pass all others, as few as do.
+
+    They may miss positions and speeds by so much.
+    """
 
     def passes(begin: int, end: int) -> bool:
         ends = [begin, end]

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from quietarm.machine.tables.table import TABLES
-from quietarm.models import Robot
+from quietarm.models import Robot, RobotOnPath
 from quietarm.ocp import evaluate_coefficients
 from quietarm.ocp.planning.as_timed import WINDOW, evaluate_as_timed
 from quietarm.ocp.planning.named_profiles import families
@@ -35,7 +35,11 @@ from quietarm.studies.cli.outputs import (
     refuse_formats,
 )
 from quietarm.studies.cli.plants import choose_kind
-from quietarm.studies.cli.quantities import parse_coefficients
+from quietarm.studies.cli.quantities import (
+    parse_coefficients,
+    parse_parameters,
+    single_values,
+)
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.front_rows import search_lines
@@ -129,11 +133,14 @@ def _evaluate_as_timed(given: Given) -> None:
         raise ValueError(
             "--as-timed is for the trajectory of a robot; give its file and --path trajectory.yaml"
         )
-    kept = {"plant", "path", "as_timed", "residual_window", "energy"}
+    kept = {"plant", "path", "as_timed", "residual_window", "energy", "parameters"}
     given.refuse_others(kept, "is not for a trajectory with its own times")
+    multiples = single_values(parse_parameters(RobotOnPath, given.parameters))
     window = given.residual_window if given.typed("residual_window") else WINDOW
     with busy("integrating"):
-        answer = evaluate_as_timed(robot, given.path, residual_window=window, energy=given.energy)
+        answer = evaluate_as_timed(
+            robot, given.path, residual_window=window, energy=given.energy, **multiples
+        )
         rows = timed_rows(answer)
     finish([], rows)
 
