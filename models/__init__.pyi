@@ -23,4 +23,5 @@ from .robot import Measured as Measured
 from .robot import Robot as Robot
 from .robot import RobotOnPath as RobotOnPath
 from .robot import Spring as Spring
+from .robot import TimedMotion as TimedMotion
 from .single_link import SingleLinkManipulator as SingleLinkManipulator

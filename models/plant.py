@@ -69,17 +69,17 @@ def content(meaning: str) -> Any:
     return field(metadata={"content": True, "meaning": meaning})
 
 
-class FullEquations(Protocol):
-    """Equations of a plant without the reduction by which its motions are planned.
+class SprungEquations(Protocol):
+    """Equations of what moves without a reduction: every spring by itself.
 
-    The state is the angles of `springs` [rad] and their rates. Motions along the path are those of
-    `Plant`; expressions are symbols of CasADi.
+    The state is the angles of `springs` [rad] and their rates. Motions are those along a path, or
+    columns of all joints; expressions are symbols of CasADi.
     """
 
     springs: int
 
-    def at_rest(self, place: float) -> Any:
-        """Angles at rest at a place of the path, an array."""
+    def at_rest(self, place: Any) -> Any:
+        """Angles at rest at a place of the path, or with the joints at positions, an array."""
         ...
 
     def joints(self, path: JointMotion) -> Sequence[JointMotion]:
@@ -97,6 +97,13 @@ class FullEquations(Protocol):
     def tip(self, path: JointMotion, angles: Any) -> Any:
         """Position of the tip [m], a column."""
         ...
+
+
+class FullEquations(SprungEquations, Protocol):
+    """Equations of a plant without the reduction by which its motions are planned.
+
+    Motions along the path are those of `Plant`.
+    """
 
     def modal_state(self, place: float, state: np.ndarray) -> np.ndarray:
         """W [m], then W' [m/s] of the plant that a state of angles and rates comes nearest to."""

@@ -42,6 +42,8 @@ from .limits import QUANTITIES as QUANTITIES
 from .limits import Quantity as Quantity
 from .limits import add_quantity as add_quantity
 from .limits import remove_quantity as remove_quantity
+from .planning.as_timed import TimedAnswer as TimedAnswer
+from .planning.as_timed import evaluate_as_timed as evaluate_as_timed
 from .planning.correct import correct_in_full as correct_in_full
 from .planning.fastest import Fastest as Fastest
 from .planning.fastest import fastest_move as fastest_move

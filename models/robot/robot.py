@@ -52,6 +52,7 @@ from quietarm.models.robot.on_path.stick_figure import stick_figure_of
 from quietarm.models.robot.on_path.tip_way import way_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
+from quietarm.models.robot.path.straight_line import tip_beside_lines
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.robot_notes import notes_of
 from quietarm.models.robot.urdf.following import (
@@ -225,6 +226,26 @@ class Robot(CheckedRobot):
                     "path within it"
                 )
         return path
+
+    def check_positions(self, points: Array) -> None:
+        """Refuse positions of the driven joints, a row a point, beyond the range of one."""
+        for name, (least, most), column in zip(self.joints, self.ranges(), points.T):
+            beyond = np.maximum(column - most, least - column)
+            if beyond.max() > _OVER:
+                at = int(beyond.argmax())
+                raise ValueError(
+                    f"joint {quoted(name)} is at {column[at]:.5g} at point {at + 1} of "
+                    f"{len(points)}; its range is {least:g} to {most:g}"
+                    f"{self._with_followers(name)}, give positions within it"
+                )
+
+    @interruptible
+    def off_straight(self, path: GeometricPath) -> float:
+        """How far the tip, if nothing bends, leaves where straight lines of the joints lead it [m].
+
+        These are the lines between the path's waypoints; 0 of a path without.
+        """
+        return tip_beside_lines(self.kinematics(self.tip), *path.beside_lines)
 
     def _with_followers(self, joint: str) -> str:
         """Words on the joints that follow one, whose ranges bind it as well."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.models import JointMotion
 from quietarm.models.compiled import Compiled
-from quietarm.models.plant import FullEquations
+from quietarm.models.plant import SprungEquations
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.profiles.free_motion import PiecewiseMotion
@@ -25,6 +25,10 @@ from quietarm.ocp.simulation.mesh import Mesh
 from quietarm.ocp.simulation.objective import spent
 
 Array = NDArray[np.float64]
+
+
+Place = float | Array
+"""On a path, or of all joints."""
 
 
 class FullFigures(NamedTuple):
@@ -40,9 +44,9 @@ class FullFigures(NamedTuple):
 
 
 def follow_in_full(
-    equations: FullEquations,
+    equations: SprungEquations,
     motion: PiecewiseMotion,
-    ends: tuple[float, float],
+    ends: tuple[Place, Place],
     steps: int,
     window: Array,
     energy: Energy,
@@ -51,12 +55,13 @@ def follow_in_full(
 
     Parameters
     ----------
-    equations : FullEquations
+    equations : SprungEquations
         Of the plant.
     motion : PiecewiseMotion
         The move.
-    ends : (float, float)
-        Start and target; at the start the springs are at rest.
+    ends : (float or ndarray, float or ndarray)
+        Start and target, where the springs of the joints are at rest: places on a path, or rows of
+        positions.
     steps : int
         Of the quadrature, on every piece.
     window : ndarray
@@ -96,22 +101,21 @@ def follow_in_full(
             ]
             lengths = ca.DM(column[-1] * mesh.lengths).T
             work += float(ca.sum1(spent(energy, nodes, lengths)))
-        still = JointMotion(given[0], 0.0, 0.0)
-        after = _followed(
-            equations, still, given[0], fraction, ca.SX(window[-1]), window / window[-1]
-        )
-        (later,) = after(state, [target])
+        there = ca.SX.sym("there", np.size(target))
+        still = JointMotion(there, 0.0, 0.0)
+        after = _followed(equations, still, there, fraction, ca.SX(window[-1]), window / window[-1])
+        (later,) = after(state, np.atleast_1d(target))
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion.remedy}") from error
     angles = np.column_stack([rest, later[: equations.springs]])
-    tips = Compiled(lambda: _tips(equations, angles.shape[1]), silent=True)
-    places = tips(target, angles)[0].T
+    tips = Compiled(lambda: _tips(equations, np.size(target), angles.shape[1]), silent=True)
+    places = tips(np.atleast_1d(target), angles)[0].T
     away = np.linalg.norm(places[1:] - places[0], axis=1)
     return FullFigures(work, float(away.max()), np.max(peaks, axis=0), state)
 
 
 def _followed(
-    equations: FullEquations,
+    equations: SprungEquations,
     path: JointMotion,
     given: ca.SX,
     fraction: ca.SX,
@@ -152,7 +156,7 @@ CVODES = {
 
 
 def _torques_and_speeds(
-    equations: FullEquations, path: JointMotion, given: ca.SX, fraction: ca.SX, samples: int
+    equations: SprungEquations, path: JointMotion, given: ca.SX, fraction: ca.SX, samples: int
 ) -> ca.Function:
     """(states, given, fractions) -> torques and speeds of the joints, a column a sample."""
     springs = equations.springs
@@ -179,9 +183,9 @@ def _sample(torques: Array, speeds: Array) -> Sample:
     )
 
 
-def _tips(equations: FullEquations, states: int) -> ca.Function:
+def _tips(equations: SprungEquations, size: int, states: int) -> ca.Function:
     """(place, angles of the springs) -> the tip, a column a state, with the joints at rest."""
-    place = ca.SX.sym("place")
+    place = ca.SX.sym("place", size)
     angles = ca.SX.sym("angles", equations.springs)
     origin = equations.tip(JointMotion(place, 0.0, 0.0), angles)
     once = ca.Function("tip", [place, angles], [ca.densify(origin)], {"cse": True})

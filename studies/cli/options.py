@@ -175,6 +175,9 @@ BAND = (
 WAYPOINTS = option("--path", type=INPUT,
                    help="Of a robot: waypoints that its joints pass, as csv with a column a joint, "
                    "or a JointTrajectory in YAML, whose times are dropped.")  # fmt: skip
+PATH_TOLERANCE = option("--path-tolerance", metavar="ANGLE",
+                        help="How far a joint may be from the straight lines between the points of "
+                        "--path, 0.5deg or 2mm; the path is refined until it holds.")  # fmt: skip
 LINE = (
     option("--line-to", metavar="X,Y,Z[,R,P,Y]", help="Of a robot: a straight line in space from "
            "--start to this place of a link, 400mm,200mm,0.5, or with roll, pitch and yaw to turn "
@@ -183,7 +186,7 @@ LINE = (
     option("--link", metavar="NAME", help="The link on the line. [default: the one that carries "
            "the beam, or else the tip]"),
 )  # fmt: skip
-ROBOT_PATH = (WAYPOINTS, *LINE)
+ROBOT_PATH = (WAYPOINTS, PATH_TOLERANCE, *LINE)
 """In place of a straight path in joint space."""
 ENDS = (
     option("--start", default="0", metavar="ANGLE", help="Joint angle at the start; of a robot one "

@@ -32,7 +32,7 @@ from quietarm.studies.cli.quantities import (
     parse_parameters,
     single_values,
 )
-from quietarm.studies.cli.robot_options import LINE_NAMES, OF_ROBOT, needed_path
+from quietarm.studies.cli.robot_options import OF_ROBOT, PATH_NAMES, needed_path
 from quietarm.studies.sweep.move_grid import Axis, MoveGrid
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
     """A plant of one joint, by its name or its file, and from where to where it moves."""
     if not given.is_command("evaluate"):  # which has recorded paths
         given.refuse(["path"], OF_ROBOT)
-    given.refuse(LINE_NAMES, OF_ROBOT)
+    given.refuse(PATH_NAMES, OF_ROBOT)
     parameters = parameters_of(kind, given.parameters)
     plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
     uncertainty = build_uncertainty(kind, given.errors, parameters)

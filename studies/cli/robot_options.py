@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
+from quietarm.models.joint_motion import LINEAR, MIXED, kind_of_joints
 from quietarm.models.robot.path.straight_line import off_straight
 from quietarm.models.robot.urdf.read_urdf import PRISMATIC
-from quietarm.models.units import parse_quantity
-from quietarm.ocp.checks import listed
+from quietarm.models.units import is_number, parse_quantity
+from quietarm.ocp.checks import listed, positive, quoted
 from quietarm.views.report.words import counted
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 LINE_NAMES = ("line_to", "line_by", "link")
 """Options of a straight line in space."""
+PATH_NAMES = (*LINE_NAMES, "path_tolerance")
+"""Options of a robot's path alone."""
 OF_ROBOT = "is for a robot, whose file is PLANT, as ur5.yaml"
 
 
@@ -38,7 +41,8 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
     """
     if given.path is not None:
         given.refuse(["start", "target", *LINE_NAMES], "is in the file of --path")
-        return GeometricPath.load(given.path)
+        return GeometricPath.load(given.path, within=_tolerance(given, robot))
+    given.refuse(["path_tolerance"], "is for the waypoints of --path")
     if given.line_to is not None or given.line_by is not None:
         return _line_in_space(given, robot)
     given.refuse(["link"], "is for --line-to and --line-by")
@@ -46,6 +50,22 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
         return None
     ends = [_positions(given.start, "--start", robot), _positions(given.target, "--target", robot)]
     return GeometricPath.line(*ends, joints=robot.joints)
+
+
+def _tolerance(given: Given, robot: Robot) -> float | None:
+    """How far a path may be from the lines between its points [rad or m], if that was typed."""
+    text: str | None = given.path_tolerance
+    if text is None:
+        return None
+    kind = kind_of_joints([robot.kind_of(name) for name in robot.joints])
+    if kind == MIXED and not is_number(text):
+        raise ValueError(
+            f"--path-tolerance is {quoted(text)}, and the robot has joints that turn and others "
+            "that slide; give a number, in rad for the first and in m for the others"
+        )
+    unit = "m" if kind == LINEAR else "rad"
+    what = "a length" if unit == "m" else "an angle"
+    return positive("--path-tolerance", parse_quantity(text, unit, what), unit)
 
 
 def _line_in_space(given: Given, robot: Robot) -> GeometricPath:

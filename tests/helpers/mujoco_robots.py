@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 mujoco = pytest.importorskip("mujoco")
 
 GRAVITY = (0.0, 0.0, -9.80665)
-# MuJoCo has no moving body without a mass; that of a hinge is 1e-5 of the bar's.
-HINGE = {"mass": 1e-5, "moments": (1e-9, 1e-9, 1e-9)}
+# MuJoCo has no moving body without a mass; 24 hinges have a hundred-thousandth of the bar's.
+HINGE = {"mass": 1e-7, "moments": (1e-9, 1e-9, 1e-9)}
 # Of a joint that moves a part of the robot, and not a hinge alone [kg m^2].
 LEAST_INERTIA = 1e-6
 

@@ -109,7 +109,11 @@ def residual_between(plan: Plan, rate: float, derivatives: int) -> float:
         How many of angle, speed and acceleration the points have: a clamped cubic spline goes
         through angles alone; else the pieces are Hermite's, of third and fifth degree.
     """
-    times = times_of(plan, rate)
+    return residual_at(plan, times_of(plan, rate), derivatives)
+
+
+def residual_at(plan: Plan, times: Array, derivatives: int) -> float:
+    """Return the residual between points at these times, from 0 to the end of the move or later."""
     along = plan.sampled(times).sample.path
     return residual_through(plan, times, [np.asarray(values) for values in along[:3]], derivatives)
 

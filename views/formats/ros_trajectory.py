@@ -8,10 +8,10 @@ import numpy as np
 
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import yaml_string
-from quietarm.ocp.planning.move_table import times_of
 from quietarm.views.formats.between_rows import note_of_points
 from quietarm.views.formats.export_format import ExportFormat, ExportSetting
 from quietarm.views.formats.row_settings import RATE
+from quietarm.views.formats.trajectory_points import THIN, left_between, times_of_points
 from quietarm.views.report.templates import templates
 
 
@@ -21,12 +21,14 @@ class RosTrajectory(ExportFormat):
     name = "ros"
     endings = (".yaml", ".yml")
     meaning = "a JointTrajectory of ROS 2"
-    settings = (RATE, ExportSetting("joint", "joint", "The joint's name."))
+    settings = (RATE, THIN, ExportSetting("joint", "joint", "The joint's name."))
     to_stdout = True
 
-    def content(self, plan: Plan, *args: Any, rate: float, joint: str) -> str:
+    def content(
+        self, plan: Plan, *args: Any, rate: float, thin: float | None = None, joint: str = "joint"
+    ) -> str:
         """A single joint has the name that is given; those of a robot the plant's."""
-        motion = plan.sampled(times_of(plan, rate))
+        motion = plan.sampled(times_of_points(plan, rate, thin))
         orders = [
             np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
             for order in range(3)
@@ -43,9 +45,13 @@ class RosTrajectory(ExportFormat):
             joints=scalars, points=points
         )
 
-    def note(self, plan: Plan, *args: Any, rate: float, **others: Any) -> str:
+    def note(
+        self, plan: Plan, *args: Any, rate: float, thin: float | None = None, **others: Any
+    ) -> str:
         """Say what the controller leaves, which takes a quintic between two points."""
-        return note_of_points(plan, rate)
+        if thin is None:
+            return note_of_points(plan, rate)
+        return left_between(plan, times_of_points(plan, rate, thin))
 
 
 def _decimal(value: float) -> str:

@@ -15,6 +15,7 @@ from quietarm.models.robot.on_path.path_tables import modes_on, swings_of
 from quietarm.models.robot.on_path.reduction import MIDDLE
 from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.ocp.limits import QUANTITIES
+from quietarm.views.report.words import counted
 
 Row = tuple[str, str]
 WARNING = "warning"
@@ -57,12 +58,13 @@ def _mass_rows(robot: Robot) -> list[Row]:
     beam = robot.beam
     if beam is not None:
         mass = beam.line_mass * beam.length
+        along_x, along_y = (beam.frequencies(along)[0] / tau for along in (0, 1))
         rows.append(
             (
                 "beam",
                 f"{beam.length:g} m at {beam.at}, {mass:.4g} kg and {beam.tip_mass:.4g} kg at its "
-                f"end, {beam.count} pieces, their first two frequencies {100 * beam.excess:.2g} % "
-                "off",
+                f"end, {counted(beam.count, 'hinge')} in each direction; clamped, without gravity, "
+                f"it swings at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y",
             )
         )
     return rows
@@ -185,9 +187,11 @@ def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
         return rows
     (size, unit, name), *others = seen
     less = ", ".join(f"{other} {smaller:.2g} {own}" for smaller, own, other in others)
+    what = "path" if path.lines else "spline"
     words = (
-        f"the spline is up to {size:.2g} {unit} from the straight lines between waypoints, at "
-        f"joint {name}{f' ({less})' if less else ''}"
+        f"the {what} is up to {size:.2g} {unit} from the straight lines between waypoints, at "
+        f"joint {name}{f' ({less})' if less else ''}, and the tip "
+        f"{1e3 * robot.off_straight(path):.2g} mm"
     )
     return [*rows, ("path", words)]
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from itertools import pairwise
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -16,12 +13,20 @@ from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import listed, quoted
+from quietarm.models.number_checks import listed, positive, quoted
 from quietarm.models.robot.dynamics.kinematics import Pose
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.path.joint_table import read_joint_table
 from quietarm.models.robot.path.piecewise import NoFitError, Piecewise, fit, interpolate
 from quietarm.models.robot.path.straight_line import straight_positions
-from quietarm.models.robot.text_files import read_text, read_yaml
+from quietarm.models.robot.path.straight_lines import (
+    BACK,
+    fewest_within,
+    nearest_on_lines,
+    rounded_lines,
+    vertices_within,
+    without_spurs,
+)
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -35,10 +40,22 @@ _LEAST_WAY = 1e-6
 _NEAR = 1e-4
 """Share of the way within which neighbours are one waypoint: a spline through both would follow
 their rounding."""
+_SAME = 1e-7
+"""The same of points of which some are taken."""
 _DEGREES = (3, 5)
-_MOST_WAYPOINTS = 200
-_BACK = -0.95
-"""Cosine between two parts of a way, below which it turns back."""
+MOST_WAYPOINTS = 200
+"""Of a spline; of more some are taken."""
+_FEW = 20
+"""Waypoints that somebody chose, and all of which a spline passes if it may."""
+MOST_POINTS = 20_000
+"""Of which these may be taken."""
+USUAL_TOLERANCE = 5e-4
+"""Of a path through some of many points [rad or m], where none is given."""
+_WITHIN = 0.9
+"""Share of a tolerance that is aimed at."""
+_SHARES = (0.02, 0.05, 0.1, 0.25)
+"""Of a tolerance, by which the lines that are kept may be others than those of all points."""
+_MOST_LINES = 400
 
 
 class _NotSmoothError(ValueError):
@@ -61,6 +78,8 @@ class GeometricPath:
         Names of the joints; the robot's, in its order, by default.
     remarks : sequence of str
         What was passed over when its waypoints were read, in one line each.
+    lines : sequence, optional
+        Points between which it follows straight lines, more or less, by `within`.
 
     Raises
     ------
@@ -74,6 +93,9 @@ class GeometricPath:
     coefficients: tuple[tuple[tuple[float, ...], ...], ...]
     joints: tuple[str, ...] = ()
     remarks: tuple[str, ...] = field(default=(), compare=False, metadata={"if_stated": True})
+    lines: tuple[tuple[float, ...], ...] = field(
+        default=(), compare=False, metadata={"if_stated": True}
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "knots", tuple(map(float, self.knots)))
@@ -83,6 +105,7 @@ class GeometricPath:
         object.__setattr__(self, "coefficients", rows)
         object.__setattr__(self, "joints", tuple(self.joints))
         object.__setattr__(self, "remarks", tuple(self.remarks))
+        object.__setattr__(self, "lines", tuple(tuple(map(float, row)) for row in self.lines))
         rising = bool(np.all(np.diff(self.knots) > 0))
         if len(self.knots) < 2 or (self.knots[0], self.knots[-1]) != (0.0, 1.0) or not rising:
             raise ValueError(
@@ -243,22 +266,99 @@ class GeometricPath:
 
     @classmethod
     @interruptible
-    def load(cls, path: str | Path, *, degree: int = 5) -> GeometricPath:
+    def load(
+        cls, path: str | Path, *, degree: int = 5, within: float | None = None
+    ) -> GeometricPath:
         """Through the points of a file: csv, or a trajectory_msgs/JointTrajectory as YAML.
 
         A message that has a JointTrajectory within will do as well: RobotTrajectory,
         DisplayTrajectory, a goal of FollowJointTrajectory. A csv has the joints' names above its
-        columns, or no names. Only positions are used; `remarks` names what else there is.
+        columns, or no names. Only positions are used; `remarks` names what else there is. Of more
+        than two hundred points those are taken that keep the path within 0.0005 rad (or m).
+
+        Parameters
+        ----------
+        within : float, optional
+            As of `within`: how far the path may be from straight lines between the points.
         """
-        if Path(path).suffix.lower() in (".yaml", ".yml", ".json"):
-            names, points, remarks = _trajectory_of(path)
-        else:
-            names, points, remarks = _table_of(path)
+        table = read_joint_table(path)
         try:
-            through = cls.through(points, degree=degree, joints=names)
+            if within is not None or len(table.positions) > MOST_WAYPOINTS:
+                through = cls.within(
+                    table.positions, within or USUAL_TOLERANCE, degree=degree, joints=table.joints
+                )
+            else:
+                through = cls.through(table.positions, degree=degree, joints=table.joints)
         except ValueError as error:
             raise ValueError(f"path {path}: {error}") from None
-        return replace(through, remarks=(*remarks, *through.remarks))
+        return replace(through, remarks=(*table.remarks, *through.remarks))
+
+    @classmethod
+    def within(
+        cls,
+        waypoints: ArrayLike,
+        tolerance: float,
+        *,
+        degree: int = 5,
+        joints: Sequence[str] = (),
+    ) -> GeometricPath:
+        """Within a tolerance of the straight lines between waypoints, of which there may be many.
+
+        Of up to twenty waypoints the spline of `through` where it is near enough; or else one
+        through as few of the points as keep it so; or else the straight lines themselves, their
+        corners rounded. Which of these it is, `remarks` says.
+
+        Parameters
+        ----------
+        waypoints : array_like, shape (waypoints, joints)
+            [rad or m].
+        tolerance : float
+            How far each joint may be from the nearest point of the lines [rad or m].
+
+        Raises
+        ------
+        ValueError
+            When no such path has two hundred pieces or fewer.
+        """
+        tolerance = positive("tolerance of the path", tolerance, "rad or m")
+        points = _rows(waypoints, most=MOST_POINTS)
+        if len(points) <= _FEW:
+            path = cls.through(points, degree=degree, joints=joints)
+            if path.off_straight.max() <= tolerance:
+                return path
+        given = len(points)
+        points, _ = _without_repeated(points, _SAME)
+        points, remarks = without_spurs(points, tolerance)
+        path, words = cls._near(points, tolerance, degree, joints)
+        words = f"{words.format(given)}, within {tolerance:.3g} rad (or m) of the lines between all"
+        lines = tuple(map(tuple, _few_lines(points, tolerance).tolist()))
+        return replace(path, lines=lines, remarks=(*remarks, words))
+
+    @classmethod
+    def _near(
+        cls, points: Array, tolerance: float, degree: int, joints: Sequence[str]
+    ) -> tuple[GeometricPath, str]:
+        """A line, a spline or lines with round corners that is near enough, and words on it."""
+        corners = vertices_within(points, tolerance / 4)
+        if len(corners) == 2:
+            return cls.line(*corners, joints=joints), "a straight line in place of {} points"
+        most = min(2 * len(corners), MOST_WAYPOINTS)
+        spline = partial(_natural, degree=degree)
+        kept, places = fewest_within(points, _WITHIN * tolerance, spline, most)
+        if len(kept):
+            path = cls.through(points[kept], at=places, degree=degree, joints=joints)
+            return path, f"through {len(kept)} of {{}} points"
+        if 2 * len(corners) > MOST_WAYPOINTS:
+            raise ValueError(
+                f"{len(corners)} of its points are needed to stay within {tolerance:.3g} rad "
+                f"(or m) of the lines between all; a path has {MOST_WAYPOINTS // 2} at most: "
+                "give a larger tolerance, as --path-tolerance 0.5deg, or a part of the path"
+            )
+        _check_turns(corners)
+        left_out = np.linalg.norm(points - nearest_on_lines(points, corners), axis=1).max()
+        rounded = rounded_lines(corners, _WITHIN * tolerance - left_out)
+        path = cls(*_plain(rounded), tuple(joints))
+        return path, f"straight between {len(corners)} of {{}} points, with round corners"
 
     @classmethod
     def _of_spline(cls, spline: BSpline, knots: Array, joints: tuple[str, ...]) -> GeometricPath:
@@ -309,7 +409,8 @@ class GeometricPath:
         remarks = self.remarks
         if left_out:
             remarks += (f"joints that the robot does not drive are left out: {listed(left_out)}",)
-        return GeometricPath(self.knots, rows, tuple(names), remarks)
+        lines = tuple(tuple(row[i] for i in order) for row in self.lines)
+        return GeometricPath(self.knots, rows, tuple(names), remarks, lines)
 
     @cached_property
     def off_straight(self) -> Array:
@@ -317,20 +418,26 @@ class GeometricPath:
 
         0 of a line, and of a path that a function gives.
         """
+        positions, nearest = self.beside_lines
+        return np.abs(positions - nearest).max(axis=0)
+
+    @cached_property
+    def beside_lines(self) -> tuple[Array, Array]:
+        """Positions along it, and the nearest points of the lines between its waypoints."""
         of_spline = len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
-        if not of_spline:
-            return np.zeros(self.count)
-        shares = np.linspace(0.0, 1.0, 201)[1:-1, None]
-        largest = np.zeros(self.count)
-        for begin, end in pairwise(self.knots):
-            ends = self.inner([begin, end])
-            positions = self.inner(begin + (end - begin) * shares[:, 0])
-            # the nearest point of the line: of several joints none is at fault for its timing
-            way = ends[1] - ends[0]
-            along = np.clip((positions - ends[0]) @ way / max(way @ way, 1e-300), 0.0, 1.0)
-            off = np.abs(positions - ends[0] - along[:, None] * way)
-            largest = np.maximum(largest, off.max(axis=0))
-        return largest
+        if not of_spline and not self.lines:
+            return np.zeros((1, self.count)), np.zeros((1, self.count))
+        knots = np.array(self.knots)
+        samples = max(_SAMPLES_OF_PIECE, _SAMPLES // (len(knots) - 1))
+        shares = np.linspace(0.0, 1.0, samples, endpoint=False)
+        places = (knots[:-1, None] + np.diff(knots)[:, None] * shares).ravel()
+        positions = self.inner(places)
+        if self.lines:
+            return positions, nearest_on_lines(positions, np.array(self.lines))
+        ends = self.inner(knots)
+        parts = np.split(positions, len(knots) - 1)
+        nearest = [nearest_on_lines(part, ends[at : at + 2]) for at, part in enumerate(parts)]
+        return positions, np.concatenate(nearest)
 
     def __call__(self, s: ArrayLike, order: int = 0) -> Array:
         """Positions, or derivatives by s, shape (places, joints), or (joints,) of one place."""
@@ -362,6 +469,9 @@ class GeometricPath:
                     )
 
 
+_SAMPLES = 2000
+_SAMPLES_OF_PIECE = 20
+"""Of a path, and of each of its pieces at least, between which it hardly leaves its lines."""
 _CONTINUOUS = 1e-6
 """Share of the largest value by which a path and its derivatives may jump."""
 
@@ -384,13 +494,13 @@ def _natural(places: Array, points: Array, degree: int) -> BSpline:
     return make_interp_spline(places, points, k=degree, bc_type=(ends, ends))
 
 
-def _without_repeated(points: Array) -> tuple[Array, tuple[str, ...]]:
+def _without_repeated(points: Array, share: float = _NEAR) -> tuple[Array, tuple[str, ...]]:
     """Waypoints without those that repeat the one before them, and words on which these are.
 
     Of the last two the last one is kept.
     """
     ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    near = max(_LEAST_WAY, _NEAR * float(ways.sum()))
+    near = max(_LEAST_WAY, share * float(ways.sum()))
     kept = [0]
     remarks = list[str]()
     for number in range(1, len(points)):
@@ -417,11 +527,20 @@ def _check_turns(points: Array) -> None:
     steps = np.diff(points, axis=0)
     steps = steps / np.linalg.norm(steps, axis=1)[:, None]
     for number, cosine in enumerate((steps[1:] * steps[:-1]).sum(axis=1), start=2):
-        if cosine < _BACK:
+        if cosine < BACK:
             raise ValueError(
                 f"the path turns back at waypoint {number}, a corner; plan a move to it and "
                 "another from there, or round the corner by a waypoint beside it"
             )
+
+
+def _few_lines(points: Array, tolerance: float) -> Array:
+    """Points whose lines are those of all, by a small share of a tolerance."""
+    for share in _SHARES:
+        lines = vertices_within(points, share * tolerance)
+        if len(lines) <= _MOST_LINES:
+            return lines
+    return lines
 
 
 def _row(name: str, values: ArrayLike) -> Array:
@@ -442,7 +561,7 @@ def _numbers(name: str, values: Any, counts: tuple[int, ...], wanted: str) -> Ar
     return row
 
 
-def _rows(values: ArrayLike) -> Array:
+def _rows(values: ArrayLike, most: int = MOST_WAYPOINTS) -> Array:
     try:
         rows = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
@@ -451,103 +570,8 @@ def _rows(values: ArrayLike) -> Array:
         raise ValueError(
             "the waypoints are no table; give two rows or more, with a number for each joint"
         )
-    if len(rows) > _MOST_WAYPOINTS:
+    if len(rows) > most:
         raise ValueError(
-            f"the path has {len(rows)} waypoints; give at most {_MOST_WAYPOINTS}, those that matter"
+            f"the path has {len(rows)} waypoints; give at most {most}, those that matter"
         )
     return rows
-
-
-def _trajectory_of(path: str | Path) -> tuple[tuple[str, ...], Array, list[str]]:
-    """Names and positions of the JointTrajectory in a message, and what else there is in words."""
-    messages = list(_trajectories_in(read_yaml(path, "path")))
-    filled = [message for message in messages if message["joint_names"] or message["points"]]
-    positioned = [message for message in filled if not _is_in_space(message)]
-    if not positioned:
-        raise ValueError(
-            f"path {path} is no JointTrajectory; give one with joint_names and points, or a csv"
-        )
-    if len(positioned) > 1:
-        raise ValueError(
-            f"path {path} has {len(positioned)} trajectories; give a file of one of them"
-        )
-    (trajectory,) = positioned
-    points = trajectory["points"]
-    names = tuple(map(str, trajectory["joint_names"] or ()))
-    try:
-        positions = np.array([point["positions"] for point in points], dtype=float)
-    except (TypeError, KeyError, ValueError):
-        raise ValueError(
-            f"path {path} has a point without positions of all joints; write it again"
-        ) from None
-    others = {entry for point in points for entry, value in point.items() if value}
-    unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
-    remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []
-    if len(filled) > 1:
-        remarks.append("not used of the file: a trajectory of joints with several degrees")
-    return names, positions, remarks
-
-
-_BESIDE_POSITIONS = {
-    "velocities": "velocities", "accelerations": "accelerations", "effort": "efforts",
-    "time_from_start": "times",
-}  # fmt: skip
-"""Entries of a trajectory's point that a path has no use for."""
-
-
-def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
-    """Find the parts of a message that have joint_names and points, however deep."""
-    if isinstance(document, Mapping):
-        if "points" in document and "joint_names" in document:
-            yield document
-            return
-        document = list(document.values())
-    if isinstance(document, list):
-        for entry in document:
-            yield from _trajectories_in(entry)
-
-
-def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
-    """Return whether a trajectory is a MultiDOFJointTrajectory, which holds whole poses."""
-    points = trajectory["points"]
-    first = points[0] if isinstance(points, list) and points else None
-    return isinstance(first, Mapping) and "transforms" in first
-
-
-def _table_of(path: str | Path) -> tuple[tuple[str, ...], Array, list[str]]:
-    """Names, where they are above the columns, and positions of a csv; what is not used of it."""
-    text = read_text(path, "path")
-    lines = [
-        line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise ValueError(f"path {path} is empty; give a row for each waypoint")
-    mark = next((mark for mark in ";\t," if mark in lines[0]), None)
-    rows = (
-        [line.split() for line in lines]
-        if mark is None
-        else list(csv.reader(io.StringIO("\n".join(lines)), delimiter=mark))
-    )
-    names = tuple[str, ...]()
-    try:
-        [float(cell) for cell in rows[0]]
-    except ValueError:
-        names = tuple(cell.strip() for cell in rows[0])
-        rows = rows[1:]
-    if len({len(row) for row in rows}) != 1:
-        raise ValueError(
-            f"path {path} has rows of different lengths, or none; give a number for each joint in "
-            "each"
-        )
-    try:
-        table = np.array([[float(cell) for cell in row] for row in rows])
-    except ValueError as error:
-        raise ValueError(
-            f"path {path} has a row that is no row of numbers ({error}); give a number for each "
-            "joint"
-        ) from None
-    times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
-    kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)
-    remarks = ["not used of the table: times"] if any(times) else []
-    joints = tuple(name for name, is_time in zip(names, times) if not is_time)
-    return joints, table[:, kept], remarks

@@ -89,6 +89,18 @@ def off_straight(kinematics: Kinematics, path: Callable[[Array], Array]) -> floa
     return float(np.linalg.norm(across, axis=1).max())
 
 
+def tip_beside_lines(kinematics: Kinematics, positions: Array, nearest: Array) -> float:
+    """Largest distance of a link [m] at positions from where it is at others, row by row."""
+    step = max(1, len(positions) // _MOST_SAMPLES)
+    return max(
+        float(np.linalg.norm(kinematics.pose(here).origin - kinematics.pose(there).origin))
+        for here, there in zip(positions[::step], nearest[::step])
+    )
+
+
+_MOST_SAMPLES = 500
+
+
 class _Line:
     """A straight line from pose to pose that turns about one axis."""
 

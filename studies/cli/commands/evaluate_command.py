@@ -7,8 +7,9 @@ from pathlib import Path
 import click
 
 from quietarm.machine.tables.table import TABLES
-from quietarm.models import Robot
+from quietarm.models import Robot, RobotOnPath
 from quietarm.ocp import evaluate_coefficients
+from quietarm.ocp.planning.as_timed import WINDOW, evaluate_as_timed
 from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies.cli.commands.plan_command import FoundMotion, finish_motion
@@ -17,6 +18,7 @@ from quietarm.studies.cli.options import (
     BOUND,
     LINE,
     OBJECTIVES,
+    PATH_TOLERANCE,
     SENSITIVITIES,
     TASK,
     busy,
@@ -32,12 +34,18 @@ from quietarm.studies.cli.outputs import (
     output_option,
     refuse_formats,
 )
-from quietarm.studies.cli.quantities import parse_coefficients
+from quietarm.studies.cli.plants import choose_kind
+from quietarm.studies.cli.quantities import (
+    parse_coefficients,
+    parse_parameters,
+    single_values,
+)
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.acting_words import path_lines
 from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.plan_rows import path_rows
+from quietarm.views.report.timed_rows import timed_rows
 
 
 def _coefficients(text: str) -> list[float] | Path:
@@ -51,11 +59,14 @@ def _coefficients(text: str) -> list[float] | Path:
            "motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
     option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
            "place of start, target and duration; of a robot its waypoints."),
+    PATH_TOLERANCE,
     *LINE,
     BOUND,
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
     OBJECTIVES,
     SENSITIVITIES,
+    option("--as-timed", is_flag=True, help="Judge the trajectory of --path with its own times: "
+           "what it takes and leaves, and what makes it ring."),
     output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
                    PICTURE: "a picture"}, formats=["plan", "front"]),
 )  # fmt: skip
@@ -71,10 +82,13 @@ def evaluate(given: Given) -> None:
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients=0.003347,-0.1697
       quietarm evaluate single-link --target pi/6 --duration 0.8 --profile zvd
       quietarm evaluate flexible-beam --set omega=3.2Hz --path recorded.csv
+      quietarm evaluate ur5_bar.yaml --path trajectory.yaml --as-timed
       quietarm evaluate single-link --target pi/6 --duration 0.8 --coefficients results.csv \\
           --output front.json --output front.png
     """  # noqa: D301  # \b is click's: do not rewrap
-    if given.path is not None and not isinstance(given.plant, Robot):
+    if given.as_timed:
+        _evaluate_as_timed(given)
+    elif given.path is not None and not isinstance(given.plant, Robot):
         _evaluate_path(given)
     elif isinstance(given.coefficients, Path):
         _evaluate_table(given)
@@ -111,6 +125,25 @@ def _evaluate_path(given: Given) -> None:
     with busy("integrating"):
         rows = path_rows(task, recorded)
     finish([], *path_lines(task, recorded), rows, *recorded.notes, *given.remarks)
+
+
+def _evaluate_as_timed(given: Given) -> None:
+    """The figures of a robot's trajectory with its own times."""
+    robot = choose_kind(given.plant, given.plant_file)
+    if not isinstance(robot, Robot) or given.path is None:
+        raise ValueError(
+            "--as-timed is for the trajectory of a robot; give its file and --path trajectory.yaml"
+        )
+    kept = {"plant", "path", "as_timed", "residual_window", "energy", "parameters"}
+    given.refuse_others(kept, "is not for a trajectory with its own times")
+    multiples = single_values(parse_parameters(RobotOnPath, given.parameters))
+    window = given.residual_window if given.typed("residual_window") else WINDOW
+    with busy("integrating"):
+        answer = evaluate_as_timed(
+            robot, given.path, residual_window=window, energy=given.energy, **multiples
+        )
+        rows = timed_rows(answer)
+    finish([], rows)
 
 
 def _evaluate_table(given: Given) -> None:

@@ -5,9 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from robots import END, START, straight
+from scipy.spatial import cKDTree
 from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
+from quietarm.ocp.saved import plain, typed
 
 PLACES = np.linspace(0.0, 1.0, 401)
 
@@ -274,3 +276,105 @@ def test_joints_that_the_robot_does_not_drive_are_left_out_and_named(tmp_path):
     file.write_text("grip,a\n0,0\n0.01,0.2\n")
     with pytest.raises(ValueError, match="give positions of b as well"):
         robot.along(qa.GeometricPath.load(file))
+
+
+SQUARE = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5], [-0.3, 0.9]])
+TOLERANCE = 2e-3
+
+
+def _dense(corners, each=200):
+    """Straight lines as a controller has them: many points, evenly."""
+    shares = np.linspace(0.0, 1.0, each, endpoint=False)[:, None]
+    parts = [begin + shares * (end - begin) for begin, end in pairwise(corners)]
+    return np.concatenate([*parts, corners[-1:]])
+
+
+def _off(path, points):
+    """Largest distance of a joint of a path from the lines between points, by many of both."""
+    each = 40_000 // len(points)
+    lines = _dense(np.asarray(points), each)
+    positions = path(np.linspace(0.0, 1.0, 1501))
+    _, nearest = cKDTree(lines).query(positions)
+    return np.abs(positions - lines[nearest]).max()
+
+
+@pytest.mark.parametrize("points", [SQUARE, _dense(SQUARE)], ids=["corners", "many points"])
+def test_straight_lines_with_corners_are_kept_within_a_tolerance(points):
+    path = qa.GeometricPath.within(points, TOLERANCE)
+    assert _off(path, SQUARE) <= 1.01 * TOLERANCE
+    assert path.off_straight.max() == pytest.approx(0.9 * TOLERANCE, rel=0.3)
+    assert path([0.0, 1.0]) == pytest.approx(SQUARE[[0, -1]])
+    # between its corners it is straight
+    assert path(0.1)[1] == pytest.approx(0.0, abs=1e-12)
+    assert f"straight between 5 of {len(points)} points, with round corners" in path.remarks[0]
+
+
+def test_a_rounded_path_has_three_continuous_derivatives():
+    path = qa.GeometricPath.within(SQUARE, 0.05)
+    for knot in path.knots[1:-1]:
+        for order in range(4):
+            before, after = path([knot - 1e-9, knot + 1e-9], order)
+            scale = np.abs(path(np.linspace(0, 1, 101), order)).max()
+            assert after == pytest.approx(before, abs=1e-5 * scale)
+
+
+def test_a_smooth_path_of_many_points_is_a_spline_through_few():
+    """Of a quarter of a circle, and back on another: the curve itself, within the tolerance."""
+    angles = np.linspace(0.0, np.pi, 3001)
+    curve = np.column_stack([np.sin(angles), angles - np.cos(angles)])
+    path = qa.GeometricPath.within(curve, TOLERANCE)
+    assert len(path.knots) < 15
+    assert _off(path, curve[::10]) <= TOLERANCE
+    assert path.remarks[0].startswith(f"through {len(path.knots)} of 3001 points, within 0.002 rad")
+
+
+def test_a_spline_that_is_near_enough_stays():
+    points = [[0.0, 0.0], [0.5, 0.3], [1.0, 0.5]]
+    path = qa.GeometricPath.within(points, 0.1)
+    assert path == qa.GeometricPath.through(points)
+    assert not path.remarks
+
+
+def test_many_points_on_a_line_are_a_line():
+    points = np.linspace(0.0, 1.0, 3000)[:, None] * [1.0, -0.5]
+    assert qa.GeometricPath.within(points, 1e-6) == qa.GeometricPath.line([0, 0], [1.0, -0.5])
+
+
+def test_a_short_way_out_and_back_is_left_out():
+    """A motion that overshoots: what is left was passed anyway."""
+    shares = np.append(np.linspace(0.0, 1.03, 400), np.linspace(1.029, 1.0, 20))
+    path = qa.GeometricPath.within(shares[:, None] * [1.0, -0.5], 1e-4)
+    assert path == qa.GeometricPath.line([0, 0], [1.0, -0.5])
+    assert path.remarks[0] == "0.034 rad (or m) that it goes beyond a point and back are left out"
+    there_and_back = np.append(np.linspace(0, 1, 300), np.linspace(0.99, 0.5, 100))
+    with pytest.raises(ValueError, match="turns back at waypoint 2, a corner; plan a move to it"):
+        qa.GeometricPath.within(there_and_back[:, None] * [1.0, -0.5], 1e-4)
+
+
+def test_noise_beyond_the_tolerance_is_refused():
+    noise = 1e-3 * np.random.default_rng(0).normal(size=(1000, 2))
+    points = np.linspace(0.0, 1.0, 1000)[:, None] * [1.0, -0.5] + noise
+    with pytest.raises(ValueError, match=r"points are needed to stay within 0.0001 rad .* at most"):
+        qa.GeometricPath.within(points, 1e-4)
+
+
+def test_thousands_of_points_of_a_file_are_thinned(tmp_path):
+    """What the joints do is kept with the path, and told in a saved plan."""
+    angles = np.linspace(0.0, 2.0, 2500)
+    table = np.column_stack([0.01 * np.arange(2500), np.sin(angles), angles])
+    np.savetxt(tmp_path / "way.csv", table, delimiter=",", header="time,a,b", comments="")
+    path = qa.GeometricPath.load(tmp_path / "way.csv")
+    assert path.remarks[0] == "not used of the table: times"
+    assert "of 2500 points, within 0.0005 rad (or m) of the lines between all" in path.remarks[1]
+    assert _off(path, table[:, 1:]) <= 5.1e-4
+    again = typed(plain(path), qa.GeometricPath)
+    assert again.off_straight == pytest.approx(path.off_straight)
+    turned = path.of_joints(["b", "a"])
+    assert turned.off_straight == pytest.approx(path.off_straight[::-1])
+
+
+def test_a_message_that_was_cut_off_is_refused(tmp_path):
+    """`ros2 topic echo` writes so much of a long list."""
+    (tmp_path / "message.yaml").write_text(TRAJECTORY + "- '...'\n---\n")
+    with pytest.raises(ValueError, match=r"is cut off at '...'; write it whole, .* --full-length"):
+        qa.GeometricPath.load(tmp_path / "message.yaml")

@@ -15,9 +15,10 @@ from quietarm.models import JointMotion, RobotOnPath
 
 pytestmark = pytest.mark.slow
 
-# The figures of the move, by another program and MuJoCo.
-ENERGY = 33.287
-LIMITED = 38.0
+# The figures of the move in MuJoCo. With six hinges in the middle of equal parts, 0.37 % too stiff
+# as version 2.0.0 had the bar, it took 33.287 J, and 38.0 J within the limits: 0.1 and 0.6 % more.
+ENERGY = 33.248
+LIMITED = 37.764
 LIMITS = {
     "torque_limit": dict(zip(UR5_JOINTS, (16.0, 44.0, 18.5, 5.0, 5.0, 5.0))),
     "speed_limit": dict.fromkeys(UR5_JOINTS, 3.0),
@@ -58,7 +59,7 @@ def test_a_robot_with_a_bar_arrives_still(plan):
     assert plan.residual < 1e-6
     residual, energy, _ = _measured(plan)
     assert residual <= 0.05e-3
-    assert residual == pytest.approx(0.033e-3, abs=2e-6)  # README, docs/robots.md, docs/field.md
+    assert residual == pytest.approx(0.030e-3, abs=2e-6)  # README, docs/robots.md, docs/field.md
     assert energy == pytest.approx(plan.energy, rel=1e-4)
 
 
@@ -104,11 +105,12 @@ class FrozenBeyond(Frozen):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("frozen", "left"), [  # docs/robots.md
-    (FrozenAtTheStart, 5.23e-3),
+    (FrozenAtTheStart, 5.40e-3),
     (FrozenInTheMiddle, 12.2e-3),
     (Frozen, 16.8e-3),
-    # there another program froze them, at the last node of its tables, and left 22.9 mm
-    (FrozenBeyond, 22.2e-3),
+    # there another program froze them, at the last node of its tables, and left 22.9 mm with a
+    # bar of six hinges
+    (FrozenBeyond, 22.4e-3),
 ])  # fmt: skip
 def test_the_posture_changes_the_forcing(frozen, left):
     """Modes frozen at one place leave much, although their frequencies hardly change."""
@@ -277,7 +279,7 @@ def test_the_whole_equations_say_what_mujoco_says(plan, cycloid):
         residual, energy, torques = _measured(motion)
         figures = motion.candidate.in_full
         assert figures.energy == pytest.approx(energy, rel=2e-5)
-        assert figures.residual == pytest.approx(residual, rel=5e-3, abs=1e-6)
+        assert figures.residual == pytest.approx(residual, rel=5e-3, abs=3e-6)
         assert figures.peak_torques == pytest.approx(torques, rel=1e-3)
 
 

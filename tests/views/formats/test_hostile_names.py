@@ -187,6 +187,11 @@ def test_ros_reads_the_names(plan, tmp_path):
     message = yaml.safe_load((tmp_path / "move.yaml").read_text(encoding="utf-8"))
     assert message["joint_names"] == NAMES
     assert set(message) == {"joint_names", "points"}
+    export_plan(plan, tmp_path / "move.moveit", rate=2.0, frame=INJECTED)
+    message = yaml.safe_load((tmp_path / "move.moveit").read_text(encoding="utf-8"))
+    assert message["joint_trajectory"]["joint_names"] == NAMES
+    assert message["joint_trajectory"]["header"]["frame_id"] == INJECTED
+    assert set(message) == {"joint_trajectory", "multi_dof_joint_trajectory"}
     single = qa.evaluate_coefficients(
         qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8), [0.0, 0.0]
     )

@@ -1,9 +1,12 @@
 """Files of robots, limits and paths on the command line: what is used, named and refused."""
 
+import re
+from functools import partial
 from pathlib import Path
 
 import pytest
 from small_robots import ARM, ARM_FILE, MIXED, write_robot
+from trajectories import trajectory_text, trapezoid
 
 import quietarm as qa
 
@@ -100,3 +103,51 @@ def test_a_linear_axis_has_columns_of_positions(folder, call, columns):
     assert code == 0
     assert out.startswith("position_mm,force_")
     assert out.splitlines()[-1].startswith("300,")
+
+
+LAW = partial(trapezoid, 0.25, duration=0.6)
+
+
+@pytest.mark.slow
+def test_a_trajectory_is_judged_as_it_is_timed(folder, call):
+    """Its figures, the limits that it passes, and what makes it ring."""
+    write_robot(folder, ARM, ARM_FILE, "a: {has_jerk_limits: true, max_jerk: 900}")
+    Path("moveit.yaml").write_text(trajectory_text(("a", "b"), [0, 0.1], [1.0, 0.6], 0.6, LAW))
+    code, out, _ = call("evaluate robot.yaml --path moveit.yaml --as-timed")
+    words = _words(out)
+    assert code == 0
+    assert "arm, as it is timed in 0.6 s" in words
+    assert "(beyond the limit of a 900)" in words
+    assert "step the acceleration of a jumps by" in words
+    assert "mm after arrival; of these" in words
+    assert "the jerk makes it ring" in words
+    assert "with the same path and time a plan leaves" in words
+
+
+@pytest.mark.parametrize(("line", "words"), [
+    ("evaluate robot.yaml --as-timed", "give its file and --path trajectory.yaml"),
+    ("evaluate single-link --path way.csv --as-timed", "is for the trajectory of a robot"),
+    ("evaluate robot.yaml --path way.csv --as-timed", "way.csv: has no times; give time_from_"),
+    ("evaluate robot.yaml --path way.csv --as-timed --terms 4", "--terms is not for a trajectory"),
+    ("list robot.yaml --path way.csv --path-tolerance 2kg", "'2kg' is not an angle; give"),
+    ("list robot.yaml --path way.csv --path-tolerance 0", "--path-tolerance is 0 rad; give a pos"),
+    (f"evaluate robot.yaml {MOVE} --path-tolerance 1deg", "is for the waypoints of --path"),
+    ("evaluate single-link --target 1 --duration 1 --coefficients=0 --path-tolerance 1deg",
+     "--path-tolerance is for a robot, whose file is PLANT"),
+])  # fmt: skip
+def test_trajectories_and_tolerances_that_cannot_be_used_are_refused(folder, refused, line, words):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("way.csv").write_text("a,b\n0,0\n0.5,0.2\n0.5,1\n")
+    assert words in refused(line)
+
+
+def test_a_path_with_corners_is_rounded_within_its_tolerance(folder, call):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("way.csv").write_text("a,b\n0,0\n0.5,0\n0.5,0.5\n")
+    code, out, _ = call("list robot.yaml --path way.csv --path-tolerance 0.5deg")
+    words = _words(out)
+    assert code == 0
+    assert "straight between 3 of 3 points, with round corners, within 0.00873 rad" in words
+    # 0.45 of 0.5 deg at the corner: half a right angle from both
+    assert "the path is up to 0.0056 rad from the straight lines between waypoints" in words
+    assert re.search(r"and the tip [\d.]+ mm", words)

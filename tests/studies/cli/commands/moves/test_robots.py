@@ -234,7 +234,7 @@ def test_a_robot_is_listed_with_what_was_read(call):
     code, out, _ = call(f"list ur5_bar.yaml {ENDS}")
     assert code == 0
     for words in (
-        "upper_arm_link 8.393", "0.2074 kg and 0.5 kg at its end, 6 pieces",
+        "upper_arm_link 8.393", "0.2074 kg and 0.5 kg at its end, 5 hinges in each",
         "modes 3.18, 4.72 Hz (left out: 47.1, 70.6 ...)", "sag 14.", "rotor inertia",
         "none: give limits, urdf or a joint_limits.yaml",
     ):  # fmt: skip

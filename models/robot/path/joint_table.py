@@ -1,0 +1,193 @@
+"""Tables of positions that joints go through, as files have them: csv, and messages of ROS."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quietarm.models.joint_motion import Array
+from quietarm.models.robot.text_files import read_text, read_yaml
+
+_MESSAGES = (".yaml", ".yml", ".json", ".moveit")
+"""Endings of files in YAML, of which JSON is a part."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointTable:
+    """Positions of joints, a row a point, and what a file has beside them.
+
+    Attributes
+    ----------
+    joints : tuple of str
+        Their names; none of a csv without.
+    positions : ndarray, shape (points, joints)
+        [rad or m].
+    times : ndarray, shape (points,), optional
+        When each is passed [s].
+    velocities, accelerations : ndarray, shape (points, joints), optional
+        At each point [rad/s, rad/s^2, or of m].
+    remarks : tuple of str
+        What of the file a path does not use, and what nothing does, in one line each.
+    """
+
+    joints: tuple[str, ...]
+    positions: Array
+    times: Array | None = None
+    velocities: Array | None = None
+    accelerations: Array | None = None
+    remarks: tuple[str, ...] = ()
+
+
+def read_joint_table(path: str | Path) -> JointTable:
+    """The points of a file: csv, or a JointTrajectory in YAML or a message that has one within.
+
+    Raises
+    ------
+    ValueError
+        When it has none, several, or a point without positions of all joints.
+    """
+    if Path(path).suffix.lower() in _MESSAGES:
+        return _trajectory_of(path)
+    return _table_of(path)
+
+
+def _trajectory_of(path: str | Path) -> JointTable:
+    """The JointTrajectory in a message, however deep."""
+    messages = list(_trajectories_in(read_yaml(path, "path")))
+    filled = [message for message in messages if message["joint_names"] or message["points"]]
+    positioned = [message for message in filled if not _is_in_space(message)]
+    if not positioned:
+        raise ValueError(
+            f"path {path} is no JointTrajectory; give one with joint_names and points, or a csv"
+        )
+    if len(positioned) > 1:
+        raise ValueError(
+            f"path {path} has {len(positioned)} trajectories; give a file of one of them"
+        )
+    (trajectory,) = positioned
+    points = trajectory["points"]
+    names = tuple(map(str, trajectory["joint_names"] or ()))
+    if _CUT_OFF in (*(points or ()), *names):
+        raise ValueError(
+            f"path {path} is cut off at '...'; write it whole, by ros2 topic echo --full-length"
+        )
+    positions = _entries(points, "positions")
+    if positions is None:
+        raise ValueError(f"path {path} has a point without positions of all joints; write it again")
+    others = {entry for point in points for entry, value in point.items() if value}
+    unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
+    remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []
+    if len(filled) > 1:
+        remarks.append("not used of the file: a trajectory of joints with several degrees")
+    times = [_seconds(point.get("time_from_start")) for point in points]
+    return JointTable(
+        names,
+        positions,
+        times=None if None in times else np.array(times, float),
+        velocities=_of_shape(_entries(points, "velocities"), positions),
+        accelerations=_of_shape(_entries(points, "accelerations"), positions),
+        remarks=tuple(remarks),
+    )
+
+
+_CUT_OFF = "..."
+"""What `ros2 topic echo` writes in place of the rest of a long list."""
+
+
+def _entries(points: Any, name: str) -> Array | None:
+    """An entry of every point, a row each; None where one has none."""
+    try:
+        return np.array([point[name] for point in points], dtype=float)
+    except (TypeError, KeyError, ValueError):
+        return None
+
+
+def _of_shape(entries: Array | None, positions: Array) -> Array | None:
+    """Entries that every joint has at every point; None of others."""
+    return entries if entries is not None and entries.shape == positions.shape else None
+
+
+def _seconds(time: Any) -> float | None:
+    """A duration of ROS 2 or ROS 1, or a number [s]; None of what is none."""
+    if isinstance(time, Mapping):
+        whole = time.get("sec", time.get("secs", 0))
+        parts = time.get("nanosec", time.get("nsecs", 0))
+        if isinstance(whole, int | float) and isinstance(parts, int | float):
+            return float(whole) + 1e-9 * float(parts)
+        return None
+    return float(time) if isinstance(time, int | float) and not isinstance(time, bool) else None
+
+
+_BESIDE_POSITIONS = {
+    "velocities": "velocities", "accelerations": "accelerations", "effort": "efforts",
+    "time_from_start": "times",
+}  # fmt: skip
+"""Entries of a trajectory's point that a path has no use for."""
+
+
+def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
+    """Whatever has joint_names and points in a message, however deep."""
+    if isinstance(document, Mapping):
+        if "points" in document and "joint_names" in document:
+            yield document
+            return
+        document = list(document.values())
+    if isinstance(document, list):
+        for entry in document:
+            yield from _trajectories_in(entry)
+
+
+def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
+    """Whether it is a MultiDOFJointTrajectory, of whole poses."""
+    points = trajectory["points"]
+    first = points[0] if isinstance(points, list) and points else None
+    return isinstance(first, Mapping) and "transforms" in first
+
+
+def _table_of(path: str | Path) -> JointTable:
+    """Names, where they are above the columns, and positions of a csv; its times."""
+    text = read_text(path, "path")
+    lines = [
+        line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise ValueError(f"path {path} is empty; give a row for each waypoint")
+    mark = next((mark for mark in ";\t," if mark in lines[0]), None)
+    rows = (
+        [line.split() for line in lines]
+        if mark is None
+        else list(csv.reader(io.StringIO("\n".join(lines)), delimiter=mark))
+    )
+    names = tuple[str, ...]()
+    try:
+        [float(cell) for cell in rows[0]]
+    except ValueError:
+        names = tuple(cell.strip() for cell in rows[0])
+        rows = rows[1:]
+    if len({len(row) for row in rows}) != 1:
+        raise ValueError(
+            f"path {path} has rows of different lengths, or none; give a number for each joint in "
+            "each"
+        )
+    try:
+        table = np.array([[float(cell) for cell in row] for row in rows])
+    except ValueError as error:
+        raise ValueError(
+            f"path {path} has a row that is no row of numbers ({error}); give a number for each "
+            "joint"
+        ) from None
+    times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
+    at = [number for number, is_time in enumerate(times) if is_time]
+    kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)
+    return JointTable(
+        tuple(name for name, is_time in zip(names, times) if not is_time),
+        table[:, kept],
+        times=table[:, at[0]] if len(at) == 1 else None,
+        remarks=("not used of the table: times",) if at else (),
+    )
