@@ -148,6 +148,11 @@ class FlexibleBeam(Plant):
         """Displacement of the tip, the sum of its modes [m]."""
         return [sum(W[1:], W[0])]
 
+    @property
+    def tip_reach(self) -> float:
+        """From the axis to the tip."""
+        return self.hub_radius + self.length
+
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The beam on its hub."""
         plate = flexible_link(self.length, angle, tips[0])

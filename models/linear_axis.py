@@ -92,6 +92,11 @@ class LinearAxis(Plant):
         """Displacement of the load [m]."""
         return [sum(W[1:], W[0])]
 
+    @property
+    def tip_reach(self) -> float:
+        """The load goes as far as the carriage."""
+        return 1.0
+
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The load below its carriage, along the axis."""
         carriage = np.array([[angle - 0.05, 0.0], [angle + 0.05, 0.0]])

@@ -232,6 +232,27 @@ class Plant(ABC):
         """Displacements of the tips at a place of the path; by default the same everywhere."""
         return self.tip_displacements(W)
 
+    @property
+    def tip_reach(self) -> float | None:
+        """How far its tips go with the joint [m/rad, or 1 where it slides]; None where not known.
+
+        In the direction of their displacements; by default it is not known.
+        """
+        return None
+
+    def tip_deviations(
+        self, places: np.ndarray, tips: np.ndarray, target: float
+    ) -> np.ndarray | None:
+        """Where the tips are, as seen from where they rest with the joint at the target [m].
+
+        By the joint's angle or its place on the path, shape (samples,), and the tips' displacements
+        there, shape (tips, samples). A row for each tip; where `tip_lines` are of one tip that
+        moves in space, a row for each axis. None where `tip_reach` is not known: the tips are then
+        taken to arrive with the joint.
+        """
+        reach = self.tip_reach
+        return None if reach is None else reach * (places - target) + tips
+
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Time derivatives of `tips_at` [`tip_unit`/s], by default by CasADi.
 

@@ -55,6 +55,11 @@ class SingleLinkManipulator(Plant):
         """w(t, l) = phi W [m]."""
         return [self.phi * w for w in W]
 
+    @property
+    def tip_reach(self) -> float:
+        """The plate's length; it begins on the axis, since the hub's radius is not printed."""
+        return _LENGTH
+
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The plate on its hub; it begins on the axis, since the hub's radius is not printed."""
         plate = flexible_link(_LENGTH, angle, tips[0])

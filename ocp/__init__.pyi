@@ -1,3 +1,7 @@
+from .acting import Acting as Acting
+from .acting import time_to_act as time_to_act
+from .acting import time_to_act_by_samples as time_to_act_by_samples
+from .acting import worst_time_to_act as worst_time_to_act
 from .energy import AbsolutePower as AbsolutePower
 from .energy import CopperLoss as CopperLoss
 from .energy import Energy as Energy

@@ -125,7 +125,7 @@ class JudgedMotion(Ranged):
         """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
         missed = self.task.missed(self.arrival)
         pairs = zip(self.scenarios, missed)
-        return max(float(motion._vibration.peak(state)) for motion, state in pairs)
+        return max(float(motion.vibration.peak(state)) for motion, state in pairs)
 
     @cached_property
     def arrival(self) -> NDArray[np.float64]:
@@ -157,6 +157,14 @@ class JudgedMotion(Ranged):
     def moving(self) -> Sample:
         """Everything on the way, an array over the samples of the quadrature for each value."""
         return self._samples.sample
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the samples of `moving` [s]; where two pieces meet, two samples of one time."""
+        lengths = self.path.arguments[-1]
+        begins = np.append(0.0, np.cumsum(lengths[:-1]))
+        times = (begins[:, None] + np.outer(lengths, self._mesh.samples)).ravel()
+        return np.minimum(times, self.task.duration)  # beyond it by rounding
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
@@ -211,10 +219,10 @@ class JudgedMotion(Ranged):
         They are computed by CVODES without the tables and modes of the plant. Errors of the damping
         alone have no such equations.
         """
-        equations = self._plant.in_full
+        equations = self.plant.in_full
         if equations is None:
             return None
-        vibration = self._vibration
+        vibration = self.vibration
         return follow_in_full(
             equations,
             self.path,
@@ -227,20 +235,15 @@ class JudgedMotion(Ranged):
     @property
     def trajectory(self) -> Trajectory:
         """The move and the residual window; where two pieces meet, two samples of one time."""
-        lengths = self.path.arguments[-1]
-        fractions = self._mesh.samples
-        begins = np.append(0.0, np.cumsum(lengths[:-1]))
-        times = (begins[:, None] + np.outer(lengths, fractions)).ravel()
-        times = np.minimum(times, self.task.duration)  # beyond it by rounding
-        vibration = self._vibration
+        vibration = self.vibration
         # Phase of the fastest mode between samples after arrival: these miss 1.2e-6 of a peak at
         # most.
         radians_a_sample = 0.003
         samples = math.ceil(vibration.window * vibration.fastest / radians_a_sample) + 2
         later = np.linspace(0.0, vibration.window, samples)
         outputs = np.hstack([self._run.outputs, self._after(later)])
-        times = np.append(times, self.task.duration + later)
-        return Trajectory.from_outputs(self._plant, times, outputs)
+        times = np.append(self.times, self.task.duration + later)
+        return Trajectory.from_outputs(self.plant, times, outputs)
 
     def sample(self, times: ArrayLike) -> Trajectory:
         """Sample a motion along a profile.
@@ -271,11 +274,11 @@ class JudgedMotion(Ranged):
         initial = self.task.initial_state
         outputs = integrate_to(self.task.plant, self.errors, self.path, initial, fractions)
         outputs = np.hstack([outputs[:, places[:-2]], self._after(later)])
-        return Trajectory.from_outputs(self._plant, at, outputs)
+        return Trajectory.from_outputs(self.plant, at, outputs)
 
     @cached_property
     def _run(self) -> Integration:
-        _ = self._vibration  # refuses a window that is too long
+        _ = self.vibration  # refuses a window that is too long
         task = self.task
         return integrate(
             task.plant,
@@ -288,13 +291,14 @@ class JudgedMotion(Ranged):
         )
 
     @cached_property
-    def _plant(self) -> Plant:
+    def plant(self) -> Plant:
         """The plant with the errors."""
         return perturb_plant(self.task.plant, self.errors)
 
     @cached_property
-    def _vibration(self) -> FreeVibration:
-        return vibration_of(self._plant, self.task.target, self.task.residual_window)
+    def vibration(self) -> FreeVibration:
+        """The free vibration of this plant after arrival."""
+        return vibration_of(self.plant, self.task.target, self.task.residual_window)
 
     @cached_property
     def _mesh(self) -> Mesh:
@@ -322,13 +326,13 @@ class JudgedMotion(Ranged):
         """Everything on the way, at the samples of the quadrature."""
         outputs = self._run.outputs
         return Trajectory.from_outputs(
-            self._plant,
+            self.plant,
             np.zeros(outputs.shape[1]),
             outputs,
         )
 
     def _after(self, later: NDArray[np.float64]) -> NDArray[np.float64]:
         """`outputs_of` the joint at rest, at times since arrival [s]."""
-        states = self._vibration.states(self._run.arrival, later)
+        states = self.vibration.states(self._run.arrival, later)
         joint = JointMotion(self.task.target, 0.0, 0.0, 0.0)
-        return outputs_of(self._plant, joint, ca.DM(states.T)).full()
+        return outputs_of(self.plant, joint, ca.DM(states.T)).full()

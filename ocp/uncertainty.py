@@ -99,6 +99,17 @@ class ScaledModes(Plant):
         return self.plant.tip_lines
 
     @property
+    def tip_reach(self) -> float | None:
+        """The plant's [m/rad]."""
+        return self.plant.tip_reach
+
+    def tip_deviations(
+        self, places: np.ndarray, tips: np.ndarray, target: float
+    ) -> np.ndarray | None:
+        """Those of the plant [m]."""
+        return self.plant.tip_deviations(places, tips, target)
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Those of the plant."""
         return self.plant.joint_names

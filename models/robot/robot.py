@@ -59,6 +59,7 @@ from quietarm.models.robot.on_path.path_tables import (
     variations_of,
 )
 from quietarm.models.robot.on_path.stick_figure import stick_figure_of
+from quietarm.models.robot.on_path.tip_way import way_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.piecewise import Place
 from quietarm.models.robot.robot_file import read_robot
@@ -682,6 +683,15 @@ class RobotOnPath(Plant):
         """Displacements of the tip from its place at rest, in its own frame [m]."""
         rows = self._coefficients(path, "tips")["rows"]
         return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
+
+    def tip_deviations(self, places: Array, tips: Array, target: float) -> Array:
+        """Where the tip is, as seen from where it rests at the target [m]: a row for each axis.
+
+        At rest it hangs lower by the sag at its place, with the robot's own springs and payload or
+        so many times these.
+        """
+        way = way_of(self.robot, self.path, self.stiffness, self.payload)
+        return way.deviations(places, tips, target)
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The robot in space at a place of its path, as a stick figure."""

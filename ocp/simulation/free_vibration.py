@@ -58,6 +58,10 @@ class FreeVibration:
         Derivative of a state by the state [1/s].
     tips : ndarray, shape (tips, 2 * modes)
         Tip displacements [m] by the state; along the plant's `tip_lines`, where it has some.
+    displacements : ndarray, shape (tips, 2 * modes)
+        Tip displacements [m] by the state, each along its own axis.
+    is_in_space : bool
+        Whether these are displacements of one tip along perpendicular axes.
     fastest : ndarray, shape ()
         Largest angular frequency [rad/s].
 
@@ -83,7 +87,8 @@ class FreeVibration:
         units = np.eye(modes).tolist()
         by_mode = [list(plant.tips_at(at_rest, unit)) for unit in units]
         of_tips[:, :, :modes] = _stacked(by_mode, len(angles)).transpose(0, 2, 1)
-        self._of_lines = plant.tip_lines is not None
+        self.displacements = of_tips[0] if np.ndim(angle) == 0 else of_tips
+        self.is_in_space = plant.tip_lines is not None
         if plant.tip_lines is not None:
             of_tips = plant.tip_lines @ of_tips
             of_tips = of_tips[:, outermost([rows[:, :modes] for rows in of_tips])]
@@ -113,7 +118,7 @@ class FreeVibration:
         To 1.3e-3 along the lines of a plant with `tip_lines`, which has a row for each of these at
         every time: `certify` makes up for what is missed of a peak.
         """
-        return self.rows_every(radians=0.1 if self._of_lines else 0.02)
+        return self.rows_every(radians=0.1 if self.is_in_space else 0.02)
 
     @on_one_thread
     def rows_every(self, radians: float) -> Array:
