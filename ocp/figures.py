@@ -260,6 +260,11 @@ def remove_figure(name: str) -> None:
     _added.pop(name, None)
 
 
+def added_figures() -> list[Figure]:
+    """Return the figures of the user's own, those that `add_figure` made known."""
+    return list(_added.values())
+
+
 def figures_in(place: str) -> list[Figure]:
     """The figures that stand in one of `PLACES`, in the order of the table."""
     return [figure for figure in FIGURES.values() if place in figure.shown]

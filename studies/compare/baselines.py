@@ -6,7 +6,7 @@ A baseline is made for the duration of a task, or takes the shortest one within 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -54,6 +54,17 @@ _STRAIGHT = 1e-9
 """Curvature of a straight path, as a share of its slope."""
 _LEAST_SHARE = 0.02
 """Share of the duration that a shaper has to leave for the motion that it shapes."""
+
+
+def meaning_of_baseline(name: str) -> str:
+    """Return which of the pictures' `MEANINGS` a baseline is, by its shaper; or another word."""
+    shaper = _shaper_in(name)
+    return "EI" if name == EI_OF_BAND else shaper.upper()
+
+
+def _shaper_in(name: str) -> str:
+    """The shaper in a baseline's name; empty of one without."""
+    return name.removesuffix(RUCKIG).removesuffix(S_CURVE).removesuffix("-")
 
 
 def choose_baselines(names: Iterable[str]) -> tuple[str, ...]:
@@ -219,7 +230,7 @@ def _refuse_shorter(least: float, duration: float) -> None:
 
 def _impulses_of(name: str, task: PointToPoint, tolerated: float | None) -> Impulses:
     """The shaper in a baseline's name, for every mode; one impulse of a motion without a shaper."""
-    shaper = name.removesuffix(RUCKIG).removesuffix(S_CURVE).removesuffix("-")
+    shaper = _shaper_in(name)
     if not shaper:
         return Impulses((1.0,), (0.0,))
     modes = FreeVibration(task.plant, task.target).modes

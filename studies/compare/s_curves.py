@@ -1,7 +1,7 @@
 """S-curves of a task: the fastest within its limits, and the one that is tuned to its modes.
 
-An S-curve has a constant jerk in each of at most seven phases. What bends is left out, except that a
-limit of torque or deflection counts as the acceleration that it allows where nothing swings.
+An S-curve has a constant jerk in each of at most seven phases. What bends is left out, except that
+a limit of torque or deflection counts as the acceleration that it allows where nothing swings.
 """
 
 from __future__ import annotations

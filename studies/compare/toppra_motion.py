@@ -37,7 +37,8 @@ def toppra_motion(
 ) -> FreeMotion:
     """The motion that toppra finds within a task's limits, stretched to its duration.
 
-    Or the fastest one, stretched by its slowness. Stretched, all speeds and accelerations are less by the same share.
+    Or the fastest one, stretched by its slowness. Stretched, all speeds and accelerations are less
+    by the same share.
 
     ValueError where toppra is not installed, the task limits neither acceleration nor torque, or
     time is too short.

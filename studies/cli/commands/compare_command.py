@@ -14,9 +14,16 @@ from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
 from quietarm.studies.cli.outputs import REPORT_OPTION, finish
 from quietarm.studies.cli.plants import warn_of_notes
-from quietarm.studies.cli.quantities import MEASURED, once
-from quietarm.studies.cli.types import INPUT, NAMES
+from quietarm.studies.cli.quantities import (
+    MEASURED,
+    RESIDUAL_LIMIT,
+    once,
+    parse_energy,
+    parse_of_plant,
+)
+from quietarm.studies.cli.types import INPUT, NAMES, Named, Parsed
 from quietarm.studies.compare.compared_motions import SAMPLES
+from quietarm.studies.compare.plan_comparison import DURATIONS
 from quietarm.views.report import Report
 from quietarm.views.report.terminal import print_lines
 
@@ -33,6 +40,15 @@ _OF_FLOOR = [param.name or "" for param in SOLVER]
     click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
     option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
     ERROR,
+    option("--band", metavar="LENGTH", help="Plans: how close the tip has to stay to its target, "
+           "as 0.1mm; motions are then judged by the time to act, and plans may be of any "
+           "duration."),
+    option("--durations", type=Named("durations", DURATIONS), help="Plans: how long baselines "
+           "take, the shortest time of each within the limits, as long as the plan, or a row of "
+           "each. [default: own with --band, else plan]"),
+    option("--energy", type=Parsed("energy", parse_energy), help="Plans: what counts as energy "
+           "here, as positive+copper:30 with the windings' heat by the motor constant. [default: "
+           "the plan's]"),
     option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
     option("--reference", type=INPUT,
            help="Fronts: measure IGD+ and additive epsilon against this one."),
@@ -47,14 +63,18 @@ def compare(given: Given) -> None:
     IGD+, additive epsilon, candidates and time; several seeds of a method as median and quartiles.
 
     Plans: energy, residual, the worst case within parameter errors, insensitivity, percentiles,
-    peaks, and the limits that they exceed, beside the cycloid, input shapers, ruckig and toppra.
-    Ruckig needs quietarm[ruckig] and an acceleration limit, toppra quietarm[toppra] and one of
-    acceleration or torque.
+    peaks, and the limits that they exceed, beside the cycloid, S-curves, input shapers, ruckig and
+    toppra. Ruckig needs quietarm[ruckig] and an acceleration limit, toppra quietarm[toppra] and one
+    of acceleration or torque.
+
+    With --band: who may act first within the errors, and at what energy and force. Each baseline
+    takes its own shortest time within the limits.
 
     \b
     Examples:
       quietarm compare nsga2.json vepso.json epsilon.json --output compared
       quietarm compare plan.json robust.json --error frequency=8% --baselines zvd,ruckig
+      quietarm compare plan.json robust.json --band 0.1mm --baselines all
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import Front, Plan
     from quietarm.studies.compare.load_answers import open_answers
@@ -67,7 +87,8 @@ def compare(given: Given) -> None:
             given.refuse(["reference", "free", *_OF_FLOOR], "is for fronts")
             report = _of_plans(given, plans)
         else:
-            given.refuse(["baselines", "errors", "samples"], "is for plans")
+            of_plans = ["baselines", "errors", "band", "durations", "energy", "samples"]
+            given.refuse(of_plans, "is for plans")
             if not given.free:
                 given.refuse(_OF_FLOOR, "is for the free motion, which --no-free-motion leaves out")
             report = _of_fronts(given, fronts)
@@ -88,9 +109,18 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
                 "none; give errors as frequency=10%"
             )
         ranges = {**measured, **ranges}
-    judged = compare_plans(plans, given.baselines or (), ranges, given.samples)
-    first_task = next(iter(plans.values())).task
-    return plans_report(first_task, judged)
+    task = next(iter(plans.values())).task
+    band = None
+    if given.band is not None:
+        given.refuse(["samples"], "is for residuals, which --band leaves out")
+        band = parse_of_plant(RESIDUAL_LIMIT, given.band, task.plant.joint, task.plant.tip_unit)
+    if given.energy is not None:
+        task = replace(task, energy=given.energy)
+    judged = compare_plans(
+        plans, given.baselines or (), ranges, given.samples,
+        task=None if given.energy is None else task, band=band, durations=given.durations,
+    )  # fmt: skip
+    return plans_report(task, judged)
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
