@@ -40,7 +40,7 @@ class RigidBounds(NamedTuple):
     falling: float = math.inf
 
 
-class Piece(NamedTuple):
+class RigidPiece(NamedTuple):
     """A part of a rigid motion: its length [s], its first acceleration and its constant jerk."""
 
     length: float
@@ -58,13 +58,13 @@ class RigidMotion:
         How long it takes [s].
     switches : tuple of float
         When its acceleration or jerk jumps [s], from 0 to the duration.
-    pieces : tuple of Piece
+    pieces : tuple of RigidPiece
         What it does between them; none of a motion that is known by its switches alone.
     """
 
     duration: float
     switches: tuple[float, ...]
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[RigidPiece, ...] = ()
 
     @property
     def free_motion(self) -> FreeMotion:
@@ -105,7 +105,7 @@ def rigid_motion(span: float, bounds: RigidBounds) -> RigidMotion:
         *speeding_up.switches,
         *(duration - switch for switch in braking.switches),
     ]
-    pieces = (*speeding_up.pieces, Piece(cruise, 0.0, 0.0), *braking.backwards)
+    pieces = (*speeding_up.pieces, RigidPiece(cruise, 0.0, 0.0), *braking.backwards)
     return RigidMotion(duration, tuple(sorted(set(switches))), pieces)
 
 
@@ -131,17 +131,17 @@ class _Ramp(NamedTuple):
 
     switches: tuple[float, ...]
     distance: float
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[RigidPiece, ...] = ()
 
     @property
     def duration(self) -> float:
         return self.switches[-1]
 
     @property
-    def backwards(self) -> list[Piece]:
+    def backwards(self) -> list[RigidPiece]:
         """The pieces in reversed time, which brakes to rest."""
         return [
-            Piece(length, -(acceleration + jerk * length), jerk)
+            RigidPiece(length, -(acceleration + jerk * length), jerk)
             for length, acceleration, jerk in reversed(self.pieces)
         ]
 
@@ -167,9 +167,9 @@ class _Ramp(NamedTuple):
             + peak * fall**2 / 3
         )
         pieces = (
-            Piece(rise, 0.0, rising if rise else 0.0),
-            Piece(hold, peak, 0.0),
-            Piece(fall, peak, -falling if fall else 0.0),
+            RigidPiece(rise, 0.0, rising if rise else 0.0),
+            RigidPiece(hold, peak, 0.0),
+            RigidPiece(fall, peak, -falling if fall else 0.0),
         )
         return cls((0.0, rise, rise + hold, rise + hold + fall), distance, pieces)
 
