@@ -15,7 +15,7 @@ import numpy as np
 
 from quietarm.interrupts import interruptible
 from quietarm.models import Plant
-from quietarm.models.dimensions import JOULE, TIP, WATT, WAY, Unit, Words
+from quietarm.models.dimensions import JOULE, SECOND, TIP, WATT, WAY, Unit, Words
 from quietarm.models.joint_motion import MIXED
 from quietarm.models.plant_file import note_added
 from quietarm.ocp.checks import instance, quoted, takes, unknown, words_of_error
@@ -33,8 +33,14 @@ from quietarm.ocp.record import REST
 
 if TYPE_CHECKING:
     from quietarm.ocp.judged_motion import JudgedMotion
+    from quietarm.ocp.task import PointToPoint
 
 ENERGY = "energy"
+ACTS_AFTER = "acts_after"
+
+
+def _by_every(_: PointToPoint) -> bool:
+    return True
 
 
 @dataclass(frozen=True)
@@ -62,6 +68,8 @@ class Figure:
         The difference from what a file states within which it is always the same [its unit].
     quantity : str
         The quantity whose peak it is; empty of others.
+    asked_by : callable
+        Whether a task asks for it: tables of other tasks have no place for it. By default all do.
     """
 
     example: ClassVar[str] = (
@@ -77,6 +85,7 @@ class Figure:
     shown: frozenset[str] = PLACES
     agreement: float = 0.0
     quantity: str = ""
+    asked_by: Callable[[PointToPoint], bool] = _by_every
 
     def __post_init__(self) -> None:
         instance("unit", self.unit, Unit)
@@ -198,6 +207,14 @@ _FIRST = (
         shown=frozenset(),
     ),
 )
+_ACTS_AFTER = Figure(
+    ACTS_AFTER,
+    SECOND,
+    Words("acts after"),
+    lambda candidate: candidate.acts_after,
+    agreement=1e-6,
+    asked_by=lambda task: task.band is not None,
+)
 _POWER = Figure("peak_power", WATT, Words("peak power"), _peak_power, shown=frozenset({PAGE}))
 _OVERSHOOT = Figure(
     "overshoot",
@@ -227,7 +244,7 @@ class _Table(Mapping[str, Figure]):
 
     def _entries(self) -> dict[str, Figure]:
         torque, *peaks = map(peak_figure, QUANTITIES.values())
-        figures = (*_FIRST, torque, _POWER, *peaks, _OVERSHOOT, *_added.values())
+        figures = (*_FIRST, _ACTS_AFTER, torque, _POWER, *peaks, _OVERSHOOT, *_added.values())
         return {figure.name: figure for figure in figures}
 
 
@@ -265,14 +282,18 @@ def added_figures() -> list[Figure]:
     return list(_added.values())
 
 
-def figures_in(place: str) -> list[Figure]:
-    """The figures that stand in one of `PLACES`, in the order of the table."""
-    return [figure for figure in FIGURES.values() if place in figure.shown]
+def figures_in(place: str, task: PointToPoint | None = None) -> list[Figure]:
+    """Return the figures that stand in one of `PLACES`, in the order of the table.
+
+    Those that a task asks for; without a task all.
+    """
+    figures = [figure for figure in FIGURES.values() if place in figure.shown]
+    return [figure for figure in figures if task is None or figure.asked_by(task)]
 
 
-def further_figures(place: str) -> list[Figure]:
+def further_figures(place: str, task: PointToPoint) -> list[Figure]:
     """Return the figures of a place, without residual and energy, which have words of their own."""
-    return [figure for figure in figures_in(place) if figure.name not in (RESIDUAL, ENERGY)]
+    return [figure for figure in figures_in(place, task) if figure.name not in (RESIDUAL, ENERGY)]
 
 
 class Figures(Mapping[str, Any], Ranged):

@@ -34,7 +34,7 @@ def further_words(candidate: JudgedMotion, place: str) -> list[str]:
     """Figures of one's own that stand in a place, in words: "RMS torque 0.09 N m"."""
     return [
         f"{figure.label_on(candidate.task.plant)} {figure_words(candidate, figure)}"
-        for figure in further_figures(place)
+        for figure in further_figures(place, candidate.task)
         if figure.name in candidate.figures
     ]
 

@@ -73,7 +73,7 @@ class MotionAnswer(Answer):
         return self.with_entries(record=dataclasses.replace(self.record, **changes))
 
     def _content(self) -> dict[str, Any]:
-        names = [figure.name for figure in figures_in(FILE)]
+        names = [figure.name for figure in figures_in(FILE, self.candidate.task)]
         stated = {name: self.figures[name] for name in names if name in self.figures}
         return {**super()._content(), STATED: stated}
 

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Plant, known_plants
-from quietarm.models.dimensions import NONE, SECOND, WAY, Unit
+from quietarm.models.dimensions import NONE, SECOND, TIP, WAY, Unit
 from quietarm.models.joint_motion import LINEAR
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import (
+    IF_STATED,
     finite,
     has_no,
     instance,
@@ -39,7 +40,13 @@ from quietarm.ocp.limits import (
     TorqueSpeedLine,
     units_of_joints,
 )
-from quietarm.ocp.uncertainty import Scenario, Uncertainty, check_ranges, perturb_plant
+from quietarm.ocp.uncertainty import (
+    FREQUENCY,
+    Scenario,
+    Uncertainty,
+    check_ranges,
+    perturb_plant,
+)
 from quietarm.ocp.window import EQ_11, DefaultWindow, default_window, longest_window
 
 
@@ -83,6 +90,11 @@ OF_MOVES: Mapping[str, Unit] = {"start": WAY, "target": WAY, "duration": SECOND}
 LEAST_DURATION = 1e-6
 LEAST_MOVE = 1e-9
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
+MARGIN = 3.0
+"""A band is so many times the residual limit: servo, dry friction and backlash of a machine, which
+no plant has, leave as much again and more. docs/drive.md has what they leave."""
+RANGE_OF_BAND: Mapping[str, float] = {FREQUENCY: 0.05}
+"""Errors within which the tip stays in a band where nobody says them."""
 _SMALL_MOVE = 1e-3
 """A shorter move [rad or m] has absolute tolerances that are smaller in proportion."""
 _LIMIT = "_limit"
@@ -120,6 +132,14 @@ class PointToPoint:
     torque_speed : sequence of (float, float), optional
         Largest torque [N m] of the drive at speeds [rad/s], as [(1.5, 0), (0.8, 20)]; of a linear
         joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
+    band : float, optional
+        Largest distance of the tip from its target after arrival [m], static sag included, for all
+        errors of the `uncertainty`. The residual limit of plans and fronts is then by default the
+        band over the `margin`, and their figure `acts_after` is the time until the tip stays
+        within the band. `Plant.task` takes errors of 5 % of the frequency where it is given none.
+    margin : float, optional
+        How many times the residual limit the band is, 1 or more; 3 by default, for what servo and
+        dry friction of a machine leave beside the plant's vibration.
     residual_window : float, optional
         Time after arrival in which the residual is measured [s]. By default, or None, eq (11)'s
         1 s, or two periods of the nominal plant's slowest mode at the target where these are
@@ -162,12 +182,15 @@ class PointToPoint:
     energy: Energy = ABSOLUTE_POWER
     uncertainty: Uncertainty | None = None
     torque_speed: tuple[tuple[float, float], ...] | None = None
+    band: float | None = field(default=None, metadata=IF_STATED)
+    margin: float = field(default=MARGIN, metadata=IF_STATED)
 
     @classmethod
     def of(cls, plant: Plant, target: float, duration: float, **others: Any) -> PointToPoint:
         """The move of a plant within limits of its own, `Plant.limits`; with other keywords.
 
         A limit that is given is in the place of the plant's own of that quantity, and None is none.
+        A band without an uncertainty is for errors of 5 % of the frequency.
 
         Raises
         ------
@@ -181,6 +204,8 @@ class PointToPoint:
                 raise ValueError(has_no(plant.name, "limit of", name, QUANTITIES))
             if bounds:
                 own[QUANTITIES[name].limit] = bounds
+        if others.get("band") is not None:
+            own["uncertainty"] = Uncertainty(RANGE_OF_BAND)
         return cls(plant, target, duration, **{**own, **others})
 
     def __init__(
@@ -202,6 +227,8 @@ class PointToPoint:
         torque_speed: Sequence[tuple[float, float]] | None = None,
         *,
         bounds: Mapping[str, Bounds] | None = None,
+        band: float | None = None,
+        margin: float = MARGIN,
         **limits: Bounds | None,
     ) -> None:
         given = {
@@ -224,6 +251,8 @@ class PointToPoint:
             "energy": energy,
             "uncertainty": uncertainty,
             "torque_speed": torque_speed,
+            "band": band,
+            "margin": margin,
         }
         for name, value in entries.items():
             object.__setattr__(self, name, value)
@@ -288,6 +317,7 @@ class PointToPoint:
             number = positive(name.replace("_", " "), getattr(self, name), "s", most)
             object.__setattr__(self, name, number)
         self._check_limits()
+        self._check_band()
         for name, angle in (("start", self.start), ("target", self.target)):
             more = unit == "rad" and abs(angle) > 2 * math.pi
             if more and (2 * angle).is_integer():  # no multiple of pi is
@@ -319,6 +349,29 @@ class PointToPoint:
         if self.torque_speed is not None:
             line = TorqueSpeedLine(self.torque_speed, self.plant.joint)
             object.__setattr__(self, "torque_speed", line.points)
+
+    def _check_band(self) -> None:
+        """Read band and margin; ValueError where there is no such band."""
+        margin = finite("margin", self.margin)
+        if margin < 1:
+            raise ValueError(
+                f"margin is {margin:g}, so that the residual limit would be beyond the band; give "
+                f"1 or more, such as {MARGIN:g}"
+            )
+        object.__setattr__(self, "margin", margin)
+        if self.band is None:
+            return
+        if self.plant.tip_unit != "m":
+            raise ValueError(
+                f"band is {quoted(self.band)} m, and the tip of {self.plant.name} turns, in "
+                f"{self.plant.tip_unit}; give a residual limit and an uncertainty in its place"
+            )
+        object.__setattr__(self, "band", positive("band", self.band, "m"))
+
+    @property
+    def band_limit(self) -> float | None:
+        """The residual limit by the band [m], its share by the margin; None without a band."""
+        return None if self.band is None else self.band / self.margin
 
     def _check_move(self, unit: str) -> None:
         """Refuse a move that is too small, too quick, or beyond the plant's path or modes."""
@@ -625,7 +678,7 @@ def _limit_words(quantity: str) -> str:
 def _words(name: str, value: object, plant: Plant) -> str:
     if value is None:
         return "none"
-    units = {"residual window": SECOND} | dict(OF_MOVES)
+    units = {"residual window": SECOND, "band": TIP} | dict(OF_MOVES)
     units |= {_limit_words(quantity.name): quantity.unit for quantity in QUANTITIES.values()}
     unit = units.get(name, NONE).of(plant.joint, plant.tip_unit)
     return f"{value:.10g} {unit}".strip() if isinstance(value, float) else str(value)

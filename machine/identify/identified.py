@@ -18,6 +18,9 @@ from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
 
+LEAST_OF_FREQUENCY = 0.02
+"""Least error of a frequency for which plans are made, whatever the recordings show."""
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -211,6 +214,19 @@ class Identified(Answer):
             )
         least = 1e-6  # of a simulation without noise: a range of none is no range
         return {estimate.parameter: max(estimate.error, least) for estimate in moving}
+
+    @property
+    def ranges(self) -> dict[str, float]:
+        """Relative errors to plan for, for an `Uncertainty`.
+
+        They are the `errors`, of a frequency `LEAST_OF_FREQUENCY` at least: recordings of one hour
+        show how one push differs from the next, and not what a recording of another day shows, at
+        another temperature, or under the servo in place of the brake. Errors that `errors` raises.
+        """
+        return {
+            name: max(error, LEAST_OF_FREQUENCY) if is_frequency(self.plant, name) else error
+            for name, error in self.errors.items()
+        }
 
     def check_unchanged(self, names: Iterable[str]) -> None:
         """Refuse to change parameters on which the measured intervals rest.

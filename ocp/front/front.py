@@ -172,7 +172,7 @@ class Front(Answer):
         }
         more = {
             figure.column_on(self.task.plant): self.figure_values(figure)
-            for figure in further_figures(FRONT)
+            for figure in further_figures(FRONT, self.task)
         }
         return {**values, **more, **named, **window}
 
@@ -189,7 +189,7 @@ class Front(Answer):
         """What a notebook shows."""
         plant = self.task.plant
         unit = plant.tip_unit
-        added = further_figures(FRONT)
+        added = further_figures(FRONT, self.task)
         values = [self.figure_values(figure) for figure in added]
         head = (
             f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",

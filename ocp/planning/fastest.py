@@ -111,7 +111,7 @@ def fastest_move(
     if not task.limits:
         names = ", ".join(QUANTITIES)
         raise ValueError(f"nothing limits how fast the move may be; give a limit of {names}")
-    if task.uncertainty is not None and residual_limit is None:
+    if task.uncertainty is not None and residual_limit is None and task.band is None:
         residual_limit = fastest_residual_limit(task)
     began = time.perf_counter()
     request = request.stating(residual_limit)

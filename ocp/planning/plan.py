@@ -121,6 +121,15 @@ class Plan(MotionAnswer):
         return self.peaks[0] if self.peaks else None
 
     @property
+    def acts_after(self) -> float:
+        """Time from the command's start until the tip stays within the task's band [s].
+
+        In the worst case of the task's errors. It may be before the motion's end, or after it;
+        infinite where the tip never stays within the band, no number where the task has none.
+        """
+        return self.candidate.acts_after
+
+    @property
     def excess(self) -> float | None:
         """Relative excess of `worst` over the residual limit, negative if the limit is kept.
 
@@ -195,7 +204,7 @@ class Plan(MotionAnswer):
         prices = [f"{name}: {price:.4g}" for name, price in self.shadow_prices.items()]
         peaks = {
             figure.label_on(task.plant): figure_words(self.candidate, figure, drawn=True)
-            for figure in figures_in(NOTEBOOK)
+            for figure in figures_in(NOTEBOOK, task)
             if figure.name not in (RESIDUAL, ENERGY) and figure.name in self.figures
         }
         rows = {

@@ -44,8 +44,8 @@ class Request:
     residual_limit : float
         Largest residual [m] of a plan.
     adapts : bool
-        Whether that limit may be lowered or raised: of an uncertain task the default is only where
-        the search for a limit begins.
+        Whether that limit may be lowered or raised: of an uncertain task the default without
+        a band is only where the search for a limit begins.
     quick : bool
         Whether a failure need not say what would be feasible.
     has_stand_in : bool
@@ -129,7 +129,8 @@ class Request:
         ValueError where it is negative, or that of an uncertain task is 0.
         """
         size = checked_residual_limit(self.task, residual_limit)
-        adapts = residual_limit is None and self.task.uncertainty is not None
+        free = residual_limit is None and self.task.band is None
+        adapts = free and self.task.uncertainty is not None
         return replace(self, residual_limit=size, adapts=adapts)
 
     def within(self, size: float) -> Request:

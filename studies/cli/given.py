@@ -31,6 +31,8 @@ class Given:
 
     def __init__(self, context: click.Context) -> None:
         self._context = context
+        self.remarks: list[str] = []
+        """What was taken where nothing was typed; it stands beneath the answer."""
 
     def __getattr__(self, name: str) -> Any:
         try:

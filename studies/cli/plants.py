@@ -9,10 +9,13 @@ from math import tau
 from rich.console import Console
 
 from quietarm.machine.identify import Identified
+from quietarm.machine.identify.identified import LEAST_OF_FREQUENCY
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import unknown
+from quietarm.ocp.task import RANGE_OF_BAND
 from quietarm.studies.cli.quantities import MEASURED, once, parse_parameters
+from quietarm.views.report.acting_words import ranges_words
 from quietarm.views.report.terminal import print_lines
 from quietarm.views.report.words import note_lines
 
@@ -91,8 +94,23 @@ def build_uncertainty(
                 "as frequency=10%"
             )
         kind.check_unchanged(changed)
-        ranges = {**kind.errors, **ranges}
+        ranges = {**kind.ranges, **ranges}
     return Uncertainty(ranges) if ranges else None
+
+
+def uncertainty_of_band(kind: Kind, changed: Collection[str]) -> tuple[Uncertainty, str]:
+    """The errors for which a tip stays in its band where none are typed, and why these in words."""
+    usual = Uncertainty(RANGE_OF_BAND)
+    words = f"{ranges_words(usual.ranges).removeprefix('for ')}, as no --error is given"
+    if not isinstance(kind, Identified):
+        return usual, words
+    try:
+        kind.check_unchanged(changed)
+        ranges = kind.ranges
+    except ValueError as error:
+        return usual, f"{words} and its file has no range: {error}"
+    floor = f", {100 * LEAST_OF_FREQUENCY:g} % of a frequency at least"
+    return Uncertainty(ranges), f"{ranges_words(ranges).removeprefix('for ')}, as identified{floor}"
 
 
 def warn_of_notes(plant: Plant) -> None:

@@ -36,6 +36,7 @@ S = TypeVar("S")
 T = TypeVar("T")
 _PLUS = re.compile(r"(?<!\d[eE])\+")
 RESIDUAL_LIMIT = "residual_limit"
+BAND = "band"
 MEASURED = "measured"
 """In the place of errors: the intervals of an identified machine."""
 
@@ -69,6 +70,14 @@ def parse_share(text: str, name: str) -> float:
             f"{name}={100 * value:g}%"
         )
     return value
+
+
+def parse_margin(text: str) -> float:
+    """Read how many times the residual limit a band is: 3, or 1.5."""
+    margin = parse_quantity(text, "-", "a margin")
+    if not 1 <= margin < math.inf:
+        raise ValueError(f"{text} is no margin; give 1 or more, such as 3")
+    return margin
 
 
 def parse_parameter(text: str, unit: str, name: str, kind: str = OTHER) -> float:
@@ -122,6 +131,8 @@ def parse_of_plant(
         return parse_values(text, partial(parse_usual, *kind))
     if name == TORQUE_SPEED:
         return parse_torque_speed(text, joint)
+    if name == BAND:
+        return parse_usual("m", "a length", text)
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)

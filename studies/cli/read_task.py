@@ -20,10 +20,17 @@ from quietarm.studies.cli.plants import (
     build_uncertainty,
     choose_kind,
     parameters_of,
+    uncertainty_of_band,
     warn_of_notes,
     warn_of_payload,
 )
-from quietarm.studies.cli.quantities import once, parse_of_plant, parse_parameters, single_values
+from quietarm.studies.cli.quantities import (
+    BAND,
+    once,
+    parse_of_plant,
+    parse_parameters,
+    single_values,
+)
 from quietarm.studies.cli.robot_options import LINE_NAMES, OF_ROBOT, needed_path
 from quietarm.studies.sweep.move_grid import Axis, MoveGrid
 
@@ -86,13 +93,23 @@ def read_grid(given: Given) -> MoveGrid:
 def _make_task(given: Given, kind: Kind, asked: Asked) -> PointToPoint:
     """The task, whose limits that were typed are in the place of the plant's own."""
     plant = asked.plant
+    band = given.read_of_plant(BAND, plant)
+    uncertainty = asked.uncertainty
+    if band is None:
+        given.refuse(["band_margin"], "is of a --band, and none is given")
+    elif uncertainty is None:
+        changed = [name for name in asked.values if name not in OF_MOVES]
+        uncertainty, why = uncertainty_of_band(kind, changed)
+        given.remarks.append(f"the band is for {why}")
     names = [*(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED]
     typed = {name: given.read_of_plant(name, plant) for name in names}
     task = plant.task(
         **asked.move(),
         **{name: limit for name, limit in typed.items() if limit is not None},
         **given.pick(*_OTHERS),
-        uncertainty=asked.uncertainty,
+        uncertainty=uncertainty,
+        band=band,
+        margin=given.band_margin,
     )
     warn_of_payload(kind, plant, asked.values)
     if isinstance(kind, Robot) and not _shows_rows(given):

@@ -10,14 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.ocp import JudgedMotion, PointToPoint
 from quietarm.ocp.acting import Acting, time_to_act, worst_time_to_act
-from quietarm.ocp.checks import positive
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.uncertainty import FREQUENCY
 
 ERRORS = (0.0, 0.02, 0.05, 0.10)
 """Relative errors of the frequency at which every motion is judged, to both signs."""
-USUAL_RANGE = 0.05
-"""Largest relative error of the frequency where neither plans nor the user say one."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +51,13 @@ class ActingInBand:
         return np.array([max(time_to_act(one, band) for one in self.motions) for band in sizes])
 
 
-def check_band(band: float, task: PointToPoint) -> float:
-    """Return a band [m]; ValueError if it is not positive, or if nothing of the plant vibrates."""
-    band = positive("band", band, task.plant.tip_unit)
+def refuse_still(task: PointToPoint) -> None:
+    """ValueError if nothing of a task's plant vibrates, so that there is no frequency to err in."""
     if not FreeVibration(task.plant, task.target).modes:
         raise ValueError(
             f"plant {task.plant.name!r} has no frequency to err in: nothing of it vibrates; leave "
             "the band out"
         )
-    return band
 
 
 def acting_in_band(motion: JudgedMotion, band: float, ranges: Mapping[str, float]) -> ActingInBand:

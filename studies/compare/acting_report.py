@@ -13,6 +13,7 @@ from quietarm.ocp.limits import QUANTITIES
 from quietarm.studies.compare.acting_in_band import ActingInBand
 from quietarm.studies.compare.compared_motions import ComparedMotion
 from quietarm.views.pictures.acting_figures import MOST_CURVES
+from quietarm.views.report.acting_words import ranges_words
 from quietarm.views.tips import tip_words
 
 NEVER = "never"
@@ -72,9 +73,8 @@ def answer_of(motions: Sequence[ComparedMotion], plant: Plant) -> str:
         return "No motion keeps the limits."
     first, *others = order
     acting = _acting(first)
-    words = (
-        f"Within {tip_words(acting.band, plant.tip_unit)} for errors of {ranges_words(acting)}: "
-    )
+    band = tip_words(acting.band, plant.tip_unit)
+    words = f"Within {band} {ranges_words(acting.ranges)}: "
     if math.isinf(acting.latest.after):
         return f"{words}no motion keeps the tip in the band."
     words += f"{first.name} may act first, {_after_and_energy(first)}"
@@ -101,19 +101,14 @@ def title_of_answer(motions: Sequence[ComparedMotion]) -> str:
     return words if next_one is None else f"{words}, {next_one.name} {_time_words(next_one)}"
 
 
-def ranges_words(acting: ActingInBand) -> str:
-    """Return the ranges of errors, as ``frequency up to 5 %``."""
-    return " and ".join(f"{name} up to {100 * size:g} %" for name, size in acting.ranges.items())
-
-
 def _time_words(judged: ComparedMotion) -> str:
     after = _acting(judged).latest.after
-    return NEVER if math.isinf(after) else f"after {after:.3f} s"
+    return NEVER if math.isinf(after) else f"after {after:.3g} s"
 
 
 def _after_and_energy(judged: ComparedMotion) -> str:
     assert judged.motion is not None
-    return f"{_time_words(judged)}, and takes {judged.motion.energy:.4g} J"
+    return f"{_time_words(judged)}, and takes {judged.motion.energy:.3g} J"
 
 
 def acting_table(motions: Sequence[ComparedMotion], plant: Plant) -> pd.DataFrame:
@@ -129,7 +124,7 @@ def acting_table(motions: Sequence[ComparedMotion], plant: Plant) -> pd.DataFram
 def _cells(judged: ComparedMotion, unit: str) -> Iterator[tuple[str, float | str | None]]:
     assert judged.motion is not None
     yield "motion", judged.name
-    yield "takes [s]", judged.duration
+    yield "T [s]", judged.duration
     for error, after in _acting(judged).at.items():
         yield f"{100 * error:g} % [s]", NEVER if math.isinf(after) else f"{after:.4g}"
     yield "energy [J]", judged.motion.energy

@@ -18,7 +18,13 @@ from quietarm.ocp.limits import Limit, Shares
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.rigid_motion import RigidBounds
 from quietarm.ocp.profiles.free_motion import FreeMotion
-from quietarm.ocp.profiles.shaped_cycloid import SHAPERS, Impulses, convolved, extra_insensitive
+from quietarm.ocp.profiles.shaped_cycloid import (
+    LEAST_SHARE,
+    SHAPERS,
+    Impulses,
+    convolved,
+    extra_insensitive,
+)
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.studies.compare.s_curves import (
     bounds_of,
@@ -52,7 +58,7 @@ _PLACES = 21
 """Of a path, at which it is seen whether it is straight."""
 _STRAIGHT = 1e-9
 """Curvature of a straight path, as a share of its slope."""
-_LEAST_SHARE = 0.02
+_LEAST_UNSHAPED = 0.02
 """Share of the duration that a shaper has to leave for the motion that it shapes."""
 
 
@@ -97,7 +103,7 @@ def baseline(name: str, task: PointToPoint, tolerated: float | None = None) -> P
         return JudgedMotion.of_free_motion(task, free)
     impulses = _impulses_of(name, task, tolerated)
     remaining = task.duration - impulses.times[-1]
-    if remaining < _LEAST_SHARE * task.duration:
+    if remaining < _LEAST_UNSHAPED * task.duration:
         raise ValueError(
             f"the shaper alone takes {impulses.times[-1]:.3g} s, of a move of {task.duration:.4g} "
             "s; give a longer duration"
@@ -185,7 +191,8 @@ def _cycloid_family(
 ) -> Plan | JudgedMotion:
     duration = cycloid_duration(task, gentler(bounds, slowness))
     if name != CYCLOID:
-        duration += _impulses_of(name, task, None).times[-1]
+        length = _impulses_of(name, task, None).times[-1]
+        duration = max(duration + length, length / (1 - LEAST_SHARE) * (1 + 1e-9))
     return baseline(name, replace(task, duration=duration))
 
 

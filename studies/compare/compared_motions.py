@@ -22,6 +22,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.figures import rms
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
+from quietarm.ocp.task import MARGIN
 from quietarm.studies.compare.acting_in_band import ActingInBand, acting_in_band
 from quietarm.views.pictures.meaning import meaning_of
 
@@ -88,14 +89,12 @@ def judge_motion(
     ranges: Mapping[str, float],
     task: PointToPoint,
     samples: int = 0,
-    *,
-    band: float | None = None,
 ) -> ComparedMotion:
     """Evaluate a motion of a task's move within ranges of parameter errors, and by its limits.
 
     The motion keeps its own duration. With samples, also the insensitivity, and percentiles over
-    that many random plants. With a band [m] it is judged by the time to act in their place, and in
-    that of the worst residual.
+    that many random plants. For a task with a band it is judged by the time to act, in their place
+    and in that of the worst residual.
     """
     candidate = moved if isinstance(moved, JudgedMotion) else moved.candidate
     task = replace(task, duration=candidate.task.duration)
@@ -114,9 +113,9 @@ def judge_motion(
         judged = replace(judged, parameters=moved.profile.size, turns_back=moved.turns_back)
     if not isinstance(moved, JudgedMotion):
         judged = replace(judged, seconds=moved.record.seconds)
-    if band is not None:
+    if task.band is not None:
         certain = candidate.on(task.certain)
-        return replace(judged, acting=acting_in_band(certain, band, ranges))
+        return replace(judged, acting=acting_in_band(certain, task.band, ranges))
     if not isinstance(moved, Plan):
         return replace(judged, worst=worst_case(nominal, ranges)) if ranges else judged
     uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
@@ -148,7 +147,8 @@ def refuse_other_moves(tasks: Mapping[str, PointToPoint], any_duration: bool = F
 
 def _bare(task: PointToPoint) -> PointToPoint:
     default: Any = None
-    return replace(task.certain, bounds={}, torque_speed=None, residual_window=default)
+    bare = replace(task.certain, bounds={}, torque_speed=None, residual_window=default)
+    return replace(bare, band=None, margin=MARGIN)
 
 
 def merged_ranges(tasks: Iterable[PointToPoint]) -> dict[str, float]:

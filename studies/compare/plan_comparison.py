@@ -13,19 +13,19 @@ from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import JudgedMotion, Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes, unknown
-from quietarm.ocp.figures import added_figures, figures_in
+from quietarm.ocp.figures import ACTS_AFTER, added_figures, figures_in
 from quietarm.ocp.limits import COMPARISON, QUANTITIES
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
+from quietarm.ocp.task import RANGE_OF_BAND
 from quietarm.ocp.uncertainty import FREQUENCY
-from quietarm.studies.compare.acting_in_band import USUAL_RANGE, check_band
+from quietarm.studies.compare.acting_in_band import refuse_still
 from quietarm.studies.compare.acting_report import (
     acting_columns,
     acting_table,
     answer_of,
     few_by_residual,
     few_to_draw,
-    ranges_words,
     title_of_answer,
 )
 from quietarm.studies.compare.baselines import (
@@ -46,6 +46,7 @@ from quietarm.studies.compare.compared_motions import (
 )
 from quietarm.views import pictures
 from quietarm.views.report import Report
+from quietarm.views.report.acting_words import ranges_words
 from quietarm.views.report.report import table_in_markdown
 from quietarm.views.report.terminal import width_of_table
 from quietarm.views.report.words import (
@@ -73,8 +74,6 @@ PLANS = "plan"
 BOTH = "both"
 DURATIONS = (OWN, PLANS, BOTH)
 """Durations of baselines: the shortest of each, the first plan's, or a row for each."""
-_MARGIN = 3.0
-"""Share of a band that an EI shaper lets pass, as plans do: what no model has takes the rest."""
 _MOST_TOLERATED = 0.2
 """By EI, of the vibration: beyond it two impulses nearly do."""
 
@@ -87,7 +86,6 @@ def compare_plans(
     samples: int = SAMPLES,
     *,
     task: PointToPoint | None = None,
-    band: float | None = None,
     durations: str | None = None,
 ) -> list[ComparedMotion]:
     """Evaluate plans of one move and baselines for it, in this order.
@@ -105,13 +103,11 @@ def compare_plans(
     samples : int
         Random plants for the percentiles; with a band there are none.
     task : PointToPoint, optional
-        Move, limits and energy, in the place of the first plan's.
-    band : float, optional
-        Largest distance of the tip from its target [m]: motions are judged by the time until it
-        stays within, and plans may be of several durations.
+        Move, limits, energy and band, in the place of the first plan's. With a band motions are
+        judged by the time until the tip stays within, and plans may be of several durations.
     durations : {"own", "plan", "both"}, optional
         How long baselines take: the shortest time of each within the limits, as long as the first
-        plan, or a row of each. By default their own with a band, else the plan's.
+        plan, or a row of each. By default their own with a band and limits, else the plan's.
 
     Returns
     -------
@@ -127,27 +123,40 @@ def compare_plans(
     tasks = {"the move": task} if task else {}
     energy = None if task is None else {"energy": task.energy}
     tasks |= {name: replace(plan.task, **energy or {}) for name, plan in plans.items()}
-    refuse_other_moves(tasks, any_duration=band is not None)
+    first = next(iter(tasks.values()))
+    banded = next((planned for planned in tasks.values() if planned.band is not None), first)
+    first = replace(first, band=banded.band, margin=banded.margin)
+    refuse_other_moves(tasks, any_duration=first.band is not None)
     window = max(planned.residual_window for planned in tasks.values())
-    task = replace(next(iter(tasks.values())), residual_window=window)
+    task = replace(first, residual_window=window)
     ranges = ranges or merged_ranges(tasks.values())
-    if band is not None:
-        band = check_band(band, task)
-        ranges = ranges or {FREQUENCY: USUAL_RANGE}
-    durations = durations or (PLANS if band is None else OWN)
-    if durations not in DURATIONS:
-        raise ValueError(unknown("durations", durations, DURATIONS))
-    judged = [
-        judge_motion(name, plan, ranges, task, samples, band=band) for name, plan in plans.items()
-    ]
+    if task.band is not None:
+        refuse_still(task)
+        ranges = ranges or RANGE_OF_BAND
+    durations = _durations(durations, task)
+    judged = [judge_motion(name, plan, ranges, task, samples) for name, plan in plans.items()]
     for kind in (OWN, PLANS):
         if durations in (kind, BOTH):
             suffix = f" in {task.duration:.4g} s" if (durations, kind) == (BOTH, PLANS) else ""
             make = fastest_baseline if kind == OWN else baseline
             judged += [
-                _judged_baseline(name, suffix, make, ranges, task, samples, band) for name in names
+                _judged_baseline(name, suffix, make, ranges, task, samples) for name in names
             ]
     return judged
+
+
+def _durations(durations: str | None, task: PointToPoint) -> str:
+    """How long baselines take; ValueError where nothing says how short their own times are."""
+    if durations is None:
+        return OWN if task.band is not None and task.limits else PLANS
+    if durations not in DURATIONS:
+        raise ValueError(unknown("durations", durations, DURATIONS))
+    if durations != PLANS and not task.limits:
+        raise ValueError(
+            f"durations are {durations!r}, and the move has no limits, so that no time is the "
+            "shortest; plan it with some, such as --acceleration-limit 40, or take 'plan'"
+        )
+    return durations
 
 
 def _judged_baseline(
@@ -157,33 +166,32 @@ def _judged_baseline(
     ranges: Mapping[str, float],
     task: PointToPoint,
     samples: int,
-    band: float | None,
 ) -> ComparedMotion:
     """A baseline as `make` makes it, or why there is none."""
     try:
         tolerated = None
-        if name == EI_OF_BAND and band is not None:
-            tolerated = _tolerated(task, band, ranges)
+        if name == EI_OF_BAND and task.band_limit is not None:
+            tolerated = _tolerated(task, task.band_limit, ranges)
         moved = make(name, task, tolerated)
-        judged = judge_motion(name + suffix, moved, ranges, task, samples, band=band)
+        judged = judge_motion(name + suffix, moved, ranges, task, samples)
         meaning = judged.meaning or meaning_of_baseline(name)
         return replace(judged, meaning=meaning, is_baseline=True)
     except (QuietarmError, ValueError) as error:
         return ComparedMotion(name + suffix, why=str(error), is_baseline=True)
 
 
-def _tolerated(task: PointToPoint, band: float, ranges: Mapping[str, float]) -> float:
-    """Share of the S-curve's vibration that fits into a band with the usual margin."""
-    moved = fastest_baseline(S_CURVE, task)
+def _tolerated(task: PointToPoint, limit: float, ranges: Mapping[str, float]) -> float:
+    """Share of the S-curve's vibration that a residual limit allows: the band over its margin."""
+    moved = fastest_baseline(S_CURVE, task) if task.limits else baseline(S_CURVE, task)
     unshaped = moved if isinstance(moved, JudgedMotion) else moved.candidate
-    error = ranges.get(FREQUENCY, USUAL_RANGE)
+    error = ranges.get(FREQUENCY, RANGE_OF_BAND[FREQUENCY])
     swing = max(unshaped.perturbed({FREQUENCY: e}).residual for e in (-error, 0.0, error))
-    if swing <= band / _MARGIN:
+    if swing <= limit:
         raise ValueError(
             f"the S-curve leaves {tip_words(swing, task.plant.tip_unit)} without a shaper, which "
             f"fits the band; take {S_CURVE}"
         )
-    return min(band / _MARGIN / swing, _MOST_TOLERATED)
+    return min(limit / swing, _MOST_TOLERATED)
 
 
 def motions_table(
@@ -220,7 +228,7 @@ def _cells(
             words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
             yield f"{sweep.name} within {100 * TOLERATED:g} %", words
     for figure in figures_in(COMPARISON):
-        if figure.name not in RESIDUAL_AND_ENERGY:
+        if figure.name not in (*RESIDUAL_AND_ENERGY, ACTS_AFTER):
             unit = figure.unit.of(joint, tip_unit)
             yield f"{figure.label.of(joint)} [{unit or '-'}]", motion.get(figure.name)
     torque = QUANTITIES["torque"]
@@ -301,7 +309,7 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
             "answer": answer_of(motions, plant) if acting else "",
             "acting": in_width(acting_table(motions, plant)) if acting else [],
             "band": acting and tip_words(acting.band, plant.tip_unit),
-            "within": acting and ranges_words(acting),
+            "within": acting and ranges_words(acting.ranges),
             "energy": task.energy.label,
             "shown": in_width(further),
             "remarks": [*remarks(motions, unit_of_way(plant)), *note_lines(plant)],
@@ -311,7 +319,7 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
             ),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
-            "one_duration": len({motion.duration for motion in own}) == 1,
+            "own_durations": any(motion.duration != task.duration for motion in own),
             "ruckig": any("ruckig" in motion.name for motion in motions),
             "toppra": any(motion.name.startswith(TOPPRA) for motion in motions),
         },

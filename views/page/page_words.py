@@ -41,7 +41,10 @@ class ShownFigures:
     @classmethod
     def of(cls, plan: Plan, residual: float, energy: float) -> Self:
         """Those of a motion, F1 and F2 as its front states them."""
-        values = {figure.name: plan.figures.get(figure.name, nan) for figure in figures_in(PAGE)}
+        values = {
+            figure.name: plan.figures.get(figure.name, nan)
+            for figure in figures_in(PAGE, plan.task)
+        }
         joints = names_of_curves(plan.task.plant, "torque")
         peak_joint = ""
         if len(joints) > 1:
@@ -52,7 +55,7 @@ class ShownFigures:
     def cells(self, task: PointToPoint) -> list[str]:
         """The figures as a table shows them."""
         cells = list[str]()
-        for figure in figures_in(PAGE):
+        for figure in figures_in(PAGE, task):
             value = self.values[figure.name]
             if figure.name == RESIDUAL and value < REST:
                 cells.append("at rest" if task.final is None else "as asked")
@@ -65,13 +68,14 @@ class ShownFigures:
 
     def notes(self) -> list[str]:
         """What stands below each of the figures: the joint of the largest torque."""
-        figures = figures_in(PAGE)
-        return [self.peak_joint if figure.quantity == "torque" else "" for figure in figures]
+        return [
+            self.peak_joint if name == QUANTITIES["torque"].peak else "" for name in self.values
+        ]
 
 
 def figure_names(task: PointToPoint) -> list[str]:
     """What the figures are, with their units."""
-    return [_figure_name(figure, task.plant) for figure in figures_in(PAGE)]
+    return [_figure_name(figure, task.plant) for figure in figures_in(PAGE, task)]
 
 
 def _figure_name(figure: Figure, plant: Plant) -> str:

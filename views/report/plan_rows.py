@@ -266,7 +266,7 @@ def _figure_rows(
             f"{residual} {residual_place(task)}{_warnings(task, RESIDUAL)}",
         ),
     }
-    for figure in figures_in(REPORT):
+    for figure in figures_in(REPORT, task):
         if figure.name not in rows and figure.name in motion:  # a jump has no jerk
             label = figure.label_on(task.plant)
             rows[figure.name] = label, _figure(figure, candidate, remedies)

@@ -11,15 +11,15 @@ import click
 from rich.console import Console
 
 from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import BAND as BAND_OPTIONS
 from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
 from quietarm.studies.cli.outputs import REPORT_OPTION, finish
 from quietarm.studies.cli.plants import warn_of_notes
 from quietarm.studies.cli.quantities import (
+    BAND,
     MEASURED,
-    RESIDUAL_LIMIT,
     once,
     parse_energy,
-    parse_of_plant,
 )
 from quietarm.studies.cli.types import INPUT, NAMES, Named, Parsed
 from quietarm.studies.compare.compared_motions import SAMPLES
@@ -28,10 +28,14 @@ from quietarm.views.report import Report
 from quietarm.views.report.terminal import print_lines
 
 if TYPE_CHECKING:
-    from quietarm.ocp import Front, Plan, Solver
+    from quietarm.ocp import Front, Plan, PointToPoint, Solver
     from quietarm.studies.compare.front_comparison import Comparison
 
 
+_OF_PLANS = [
+    "baselines", "errors", "band", "band_margin", "durations", "energy", "samples",
+]  # fmt: skip
+"""Options that judge plans."""
 _OF_FLOOR = [param.name or "" for param in SOLVER]
 """Options of what solves here: the floor beneath fronts."""
 
@@ -40,9 +44,7 @@ _OF_FLOOR = [param.name or "" for param in SOLVER]
     click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
     option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
     ERROR,
-    option("--band", metavar="LENGTH", help="Plans: how close the tip has to stay to its target, "
-           "as 0.1mm; motions are then judged by the time to act, and plans may be of any "
-           "duration."),
+    *BAND_OPTIONS,
     option("--durations", type=Named("durations", DURATIONS), help="Plans: how long baselines "
            "take, the shortest time of each within the limits, as long as the plan, or a row of "
            "each. [default: own with --band, else plan]"),
@@ -87,7 +89,15 @@ def compare(given: Given) -> None:
             given.refuse(["reference", "free", *_OF_FLOOR], "is for fronts")
             report = _of_plans(given, plans)
         else:
-            of_plans = ["baselines", "errors", "band", "durations", "energy", "samples"]
+            of_plans = [
+                "baselines",
+                "errors",
+                "band",
+                "band_margin",
+                "durations",
+                "energy",
+                "samples",
+            ]
             given.refuse(of_plans, "is for plans")
             if not given.free:
                 given.refuse(_OF_FLOOR, "is for the free motion, which --no-free-motion leaves out")
@@ -109,18 +119,31 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
                 "none; give errors as frequency=10%"
             )
         ranges = {**measured, **ranges}
-    task = next(iter(plans.values())).task
-    band = None
-    if given.band is not None:
-        given.refuse(["samples"], "is for residuals, which --band leaves out")
-        band = parse_of_plant(RESIDUAL_LIMIT, given.band, task.plant.joint, task.plant.tip_unit)
-    if given.energy is not None:
-        task = replace(task, energy=given.energy)
+    first = next(iter(plans.values())).task
+    task = _judging(given, first)
+    if task.band is not None:
+        given.refuse(["samples"], "is for residuals, which a band leaves out")
     judged = compare_plans(
-        plans, given.baselines or (), ranges, given.samples,
-        task=None if given.energy is None else task, band=band, durations=given.durations,
-    )  # fmt: skip
+        plans,
+        given.baselines or (),
+        ranges,
+        given.samples,
+        task=None if task is first else task,
+        durations=given.durations,
+    )
     return plans_report(task, judged)
+
+
+def _judging(given: Given, task: PointToPoint) -> PointToPoint:
+    """The task of the first plan, with the band and the energy that were typed."""
+    band = given.read_of_plant(BAND, task.plant)
+    if band is not None:
+        task = replace(task, band=band, margin=given.band_margin)
+    elif task.band is None:
+        given.refuse(["band_margin"], "is of a --band, and none is given")
+    elif given.typed("band_margin"):
+        task = replace(task, margin=given.band_margin)
+    return task if given.energy is None else replace(task, energy=given.energy)
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:

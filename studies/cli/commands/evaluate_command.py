@@ -96,7 +96,7 @@ def _evaluate_coefficients(given: Given) -> None:
         profile = families()[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
         plan = evaluate_coefficients(task, given.coefficients or [], profile=profile)
-    finish_motion(FoundMotion(plan), given.output, sensitivities=given.sensitivities)
+    finish_motion(FoundMotion(plan, given.remarks), given.output, sensitivities=given.sensitivities)
 
 
 def _evaluate_path(given: Given) -> None:

@@ -52,6 +52,7 @@ from quietarm.studies.cli.outputs import (
 from quietarm.studies.cli.robot_options import line_note
 from quietarm.studies.cli.types import INPUT
 from quietarm.views import pictures
+from quietarm.views.report.acting_words import band_lines
 from quietarm.views.report.plan_rows import floor_rows, plan_rows, sensitivity_rows
 
 FREE = {"free": False, "free-smooth": True}
@@ -127,6 +128,7 @@ def plan(given: Given) -> None:
             with busy("correcting by the whole equations"):
                 corrected = correct_in_full(answer.motion, solver=solves["solver"])
             answer = replace(answer, motion=corrected)
+        answer = replace(answer, notes=[*given.remarks, *answer.notes])
         if isinstance(task.plant, RobotOnPath):
             straightness = line_note(given, task.plant)
             if straightness is not None:
@@ -217,7 +219,7 @@ def finish_motion(
         shown.append(floor_rows(motion, answer.beside))
         draw = partial(pictures.floor_figure, motion, answer.beside)
     else:
-        shown.append(plan_rows(motion))
+        shown += [*band_lines(motion), plan_rows(motion)]
         draw = partial(pictures.motion_figure, motion)
         if sensitivities:
             shown += ["\n", "what a parameter that is 1 % larger adds to residual and energy:"]

@@ -1,0 +1,56 @@
+"""When a tool may act, in words: the first line of an answer with a band."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from quietarm.ocp import Plan
+from quietarm.ocp.uncertainty import FREQUENCY
+from quietarm.views.tips import tip_words
+
+if TYPE_CHECKING:
+    from quietarm.ocp.judged_motion import JudgedMotion
+
+
+def acting_words(motion: JudgedMotion) -> str:
+    """When the tip stays within the task's band: "may act after 0.88 s: within 0.1 mm for ..."."""
+    task = motion.task
+    acting = motion.acting
+    assert acting is not None
+    assert task.band is not None
+    band = tip_words(task.band, "m")
+    errors = ranges_words(task.ranges)
+    if not math.isfinite(acting.after):
+        return f"may never act: the tip does not stay within {band} {errors}"
+    words = f"may act after {acting.after:.3g} s: within {band} {errors}"
+    knows_its_way = task.plant.has_path or task.plant.tip_reach is not None
+    if knows_its_way or acting.after > task.duration:
+        return words
+    return f"{words}; {task.plant.name} does not say where its tip goes, taken to arrive with it"
+
+
+def ranges_words(ranges: Mapping[str, float]) -> str:
+    """For which errors something holds: "for frequency errors up to 5 %"."""
+    if not ranges:
+        return "without errors"
+    if list(ranges) == [FREQUENCY]:
+        return f"for frequency errors up to {100 * ranges[FREQUENCY]:.3g} %"
+    parts = [f"{name} up to {100 * size:.3g} %" for name, size in ranges.items()]
+    return f"for errors of {' and of '.join(parts)}"
+
+
+def band_lines(plan: Plan) -> list[str]:
+    """The first lines of the answer of a plan with a band; none without one."""
+    if plan.task.band is None:
+        return []
+    lines = [acting_words(plan.candidate)]
+    by_band = plan.task.band_limit
+    limit = plan.residual_limit
+    if by_band is not None and limit is not None and not math.isclose(limit, by_band, rel_tol=1e-6):
+        lines.append(
+            f"the residual limit is {tip_words(limit, 'm')}, as stated, in place of the band's "
+            f"{tip_words(by_band, 'm')} with a margin of {plan.task.margin:g}"
+        )
+    return lines
