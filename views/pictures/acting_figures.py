@@ -24,7 +24,7 @@ MOST_CURVES = 5
 _WIDEST = 100.0
 _NARROWEST = 0.5
 """Bands that are drawn, as multiples of the one that was asked for."""
-_BANDS = 41
+_BANDS = 25
 
 
 class _End(NamedTuple):
