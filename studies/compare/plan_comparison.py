@@ -312,7 +312,11 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
             "within": acting and ranges_words(acting.ranges),
             "energy": task.energy.label,
             "shown": in_width(further),
-            "remarks": [*remarks(motions, unit_of_way(plant)), *note_lines(plant)],
+            "remarks": [
+                *remarks(motions, unit_of_way(plant)),
+                *(_words_of_way(plant) if acting else []),
+                *note_lines(plant),
+            ],
             "errors": list(ranges),
             "window": window_words(
                 next((motion.window for motion in motions if motion.window), task.residual_window)
@@ -326,6 +330,13 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
         {"motions": table},
         {"motions.png": partial(_picture, task, motions)},
     )
+
+
+def _words_of_way(plant: Plant) -> list[str]:
+    """What is assumed of a tip whose way a plant does not say."""
+    if plant.has_path or plant.tip_reach is not None:
+        return []
+    return [f"{plant.name} does not say where its tip goes: it is taken to arrive with the joint"]
 
 
 def _picture(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Figure:
