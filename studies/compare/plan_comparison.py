@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -249,15 +249,15 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
 
 def in_width(table: pd.DataFrame, width: int = WIDTH) -> list[pd.DataFrame]:
     """Return a table as several that fit into a width, each with the first column."""
-    first, *columns = table.columns
-    parts = list[list[Hashable]]()
+    first, *columns = map(str, table.columns)
+    parts = list[list[str]]()
     for column in columns:
         wider = [*(parts[-1] if parts else []), column]
-        if parts and width_of_table(table_in_markdown(table[[first, *wider]])) <= width:
+        if parts and width_of_table(table_in_markdown(table.filter([first, *wider]))) <= width:
             parts[-1] = wider
         else:
             parts.append([column])
-    return [table[[first, *part]] for part in parts]
+    return [table.filter([first, *part]) for part in parts]
 
 
 def _shortened(heading: str, others: Iterable[str]) -> str:
@@ -351,4 +351,4 @@ def _own_figures(table: pd.DataFrame, plant: Plant) -> pd.DataFrame:
     """The columns of a table that figures of the user's own have."""
     units = ((figure, figure.unit_on(plant) or "-") for figure in added_figures())
     columns = [f"{figure.label_on(plant)} [{unit}]" for figure, unit in units]
-    return table[["motion", *(column for column in columns if column in table)]]
+    return table.filter(["motion", *columns])

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, permutations, product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint, minimize
+from scipy.optimize import minimize
 
 from quietarm.ocp import PointToPoint
 from quietarm.ocp.planning.rigid_motion import RigidBounds, assumed_bounds, rigid_motion
@@ -143,9 +144,11 @@ def _best_boxes(
     high = np.full(count, math.log(longest))
     for place, length in fixed.items():
         low[place] = high[place] = math.log(length)
-    products = LinearConstraint(
-        np.tril(np.ones((count, count))), np.log(np.maximum(least, shortest**count)), np.inf
-    )
+    needed = np.log(np.maximum(least, shortest**count))
+
+    def products(logs: Array) -> Array:
+        """At least 0 each: the cruise, times the ramp, times the rounding."""
+        return np.cumsum(logs) - needed
 
     def crowded(logs: Array) -> Array:
         """At most 1 each: ramp and rounding in the cruise, the rounding in the ramp, the sum."""
@@ -153,18 +156,25 @@ def _best_boxes(
         shares = [lengths[k + 1 :].sum() / lengths[k] for k in range(count - 1)]
         return np.array(shares if duration is None else [*shares, lengths.sum() / duration])
 
-    def cost(logs: Array) -> tuple[float, Array]:
+    def cost(logs: Array) -> float:
         if duration is None:
-            return np.exp(logs).sum(), np.exp(logs)
-        of_acceleration = np.where(np.arange(count) <= RAMP, -1.0, 0.0)
-        return of_acceleration @ logs, of_acceleration
+            return float(np.exp(logs).sum())
+        return float(-logs[: RAMP + 1].sum())  # the logarithm of the acceleration
+
+    def slope(logs: Array) -> Array:
+        if duration is None:
+            return np.exp(logs)
+        return np.where(np.arange(count) <= RAMP, -1.0, 0.0)
 
     # long enough for all products, and in order
     scale = max(*(value ** (1 / (k + 1)) for k, value in enumerate(least)), *fixed.values())
     start = np.clip(np.log(scale * 2.0 ** np.arange(count, 0, -1)), low, high)
-    solution = minimize(
-        cost, start, jac=True, method="SLSQP", bounds=Bounds(low, high),
-        constraints=[products, NonlinearConstraint(crowded, -np.inf, 1.0)],
+    solution: Any = minimize(
+        cost, start, jac=slope, method="SLSQP", bounds=[*zip(low.tolist(), high.tolist())],
+        constraints=[
+            {"type": "ineq", "fun": products},
+            {"type": "ineq", "fun": lambda logs: 1.0 - crowded(logs)},
+        ],
         options={"ftol": 1e-10, "maxiter": 200},
     )  # fmt: skip
     lengths = np.exp(np.clip(solution.x, low, high))
