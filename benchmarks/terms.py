@@ -33,7 +33,8 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.planning.choose_profile import OF_SIX
-from quietarm.studies.compare.baselines import BASELINES, baseline
+from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
+from quietarm.studies.compare.baselines import CYCLOID, OVER_RUCKIG, RUCKIG, TOPPRA, baseline
 
 AS_STILL, REST, KEPT = 1e-3, 1e-6, 2e-3
 """Shares of the plain cycloid's residual and of a limit, and a residual [m]."""
@@ -88,7 +89,7 @@ def cheapest_shaper(task: PointToPoint, residual: float) -> tuple[str, float]:
     """The cheapest motion of today that is as still and keeps the limits, and its energy [J]."""
     allowed = max(residual, REST, AS_STILL * evaluate_coefficients(task, []).residual)
     kept = dict[str, float]()
-    for name in BASELINES:
+    for name in (CYCLOID, *SHAPERS, RUCKIG, *OVER_RUCKIG, TOPPRA):
         try:
             motion = baseline(name, task).motion
         except ValueError:  # the shaper is longer than the move, or ruckig finds none

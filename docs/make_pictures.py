@@ -44,7 +44,11 @@ from quietarm.views.pictures.axes import NARROW, TITLE, head, legend_below, new_
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
 SHOWN = IMAGES / "shown.json"
-OF_COMMAND = {"compared.png": "compared/motions.png", "robot.png": "move.png"}
+OF_COMMAND = {
+    "acts.png": "bought/motions.png",
+    "compared.png": "compared/motions.png",
+    "robot.png": "move.png",
+}
 """Files of commands that have another name as pictures."""
 SAMPLES = 9
 """Of a line, whose values are kept."""

@@ -279,6 +279,11 @@ def remove_figure(name: str) -> None:
     _added.pop(name, None)
 
 
+def added_figures() -> list[Figure]:
+    """Return the figures of the user's own, those that `add_figure` made known."""
+    return list(_added.values())
+
+
 def figures_in(place: str, task: PointToPoint | None = None) -> list[Figure]:
     """Return the figures that stand in one of `PLACES`, in the order of the table.
 

@@ -18,6 +18,7 @@ from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import TORQUE_SPEED, Limit, Shares, TorqueSpeedLine
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
+from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.ocp.task import PointToPoint
@@ -42,6 +43,14 @@ class RigidBounds(NamedTuple):
     falling: float = math.inf
 
 
+class RigidPiece(NamedTuple):
+    """A part of a rigid motion: its length [s], its first acceleration and its constant jerk."""
+
+    length: float
+    acceleration: float
+    jerk: float
+
+
 @dataclass(frozen=True)
 class RigidMotion:
     """The time-optimal motion of a rigid joint.
@@ -52,10 +61,22 @@ class RigidMotion:
         How long it takes [s].
     switches : tuple of float
         When its acceleration or jerk jumps [s], from 0 to the duration.
+    pieces : tuple of RigidPiece
+        What it does between them; none of a motion that is known by its switches alone.
     """
 
     duration: float
     switches: tuple[float, ...]
+    pieces: tuple[RigidPiece, ...] = ()
+
+    @property
+    def free_motion(self) -> FreeMotion:
+        """The same as a joint motion in pieces, forwards; instants without length are left out."""
+        shortest = 1e-9  # [s]: what is shorter comes from rounding
+        lasting = [piece for piece in self.pieces if piece.length > shortest]
+        lengths, accelerations, jerks = zip(*lasting)
+        times = np.append(0.0, np.cumsum(lengths))
+        return FreeMotion(times, np.array(accelerations), np.array(jerks))
 
 
 def rigid_motion(span: float, bounds: RigidBounds) -> RigidMotion:
@@ -87,7 +108,8 @@ def rigid_motion(span: float, bounds: RigidBounds) -> RigidMotion:
         *speeding_up.switches,
         *(duration - switch for switch in braking.switches),
     ]
-    return RigidMotion(duration, tuple(sorted(set(switches))))
+    pieces = (*speeding_up.pieces, RigidPiece(cruise, 0.0, 0.0), *braking.backwards)
+    return RigidMotion(duration, tuple(sorted(set(switches))), pieces)
 
 
 def _largest_speed(remaining: Callable[[float], float], most: float, halvings: int = 200) -> float:
@@ -112,10 +134,19 @@ class _Ramp(NamedTuple):
 
     switches: tuple[float, ...]
     distance: float
+    pieces: tuple[RigidPiece, ...] = ()
 
     @property
     def duration(self) -> float:
         return self.switches[-1]
+
+    @property
+    def backwards(self) -> list[RigidPiece]:
+        """The pieces in reversed time, which brakes to rest."""
+        return [
+            RigidPiece(length, -(acceleration + jerk * length), jerk)
+            for length, acceleration, jerk in reversed(self.pieces)
+        ]
 
     @classmethod
     def to(cls, speed: float, acceleration: float, rising: float, falling: float) -> _Ramp:
@@ -138,7 +169,12 @@ class _Ramp(NamedTuple):
             + speed_after_hold * fall
             + peak * fall**2 / 3
         )
-        return cls((0.0, rise, rise + hold, rise + hold + fall), distance)
+        pieces = (
+            RigidPiece(rise, 0.0, rising if rise else 0.0),
+            RigidPiece(hold, peak, 0.0),
+            RigidPiece(fall, peak, -falling if fall else 0.0),
+        )
+        return cls((0.0, rise, rise + hold, rise + hold + fall), distance, pieces)
 
 
 def rigid_duration(task: PointToPoint) -> float:

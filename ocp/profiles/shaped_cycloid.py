@@ -89,15 +89,20 @@ def _mzv(frequency: float, damping_ratio: float) -> Impulses:
     return _apart(0.75, weights, frequency, damping_ratio)
 
 
-def _ei(frequency: float, damping_ratio: float) -> Impulses:
-    """Extra insensitive: a residual of `TOLERATED` at the design frequency."""
+def extra_insensitive(
+    frequency: float, damping_ratio: float, tolerated: float = TOLERATED
+) -> Impulses:
+    """Return the EI shaper, which lets a share of the vibration pass at the design frequency.
+
+    Its residual is within that share over a wider range of frequencies than ZVD's.
+    """
     # K at which the weight V below reaches 1, so that the middle impulse 2 (1 - V) K vanishes
-    least_decay = math.sqrt(TOLERATED / (2 - TOLERATED))
-    most_damping = 1 / math.hypot(1, math.pi / math.log(least_decay))  # about 0.504
+    least_decay = math.sqrt(tolerated / (2 - tolerated))
+    most_damping = 1 / math.hypot(1, math.pi / math.log(least_decay))  # 5 %: about 0.504
     _refuse_damping("ei", damping_ratio, most_damping)
     decay = _decay(damping_ratio)
-    # so that the residual at the frequency is TOLERATED for any damping; undamped V = TOLERATED
-    V = TOLERATED * (1 + decay) ** 2 / (4 * decay**2 - TOLERATED * (1 - decay) ** 2)
+    # so that the residual at the frequency is this share for any damping; undamped V is it
+    V = tolerated * (1 + decay) ** 2 / (4 * decay**2 - tolerated * (1 - decay) ** 2)
     return _apart(1.0, [1 + V, 2 * (1 - V), 1 + V], frequency, damping_ratio)
 
 
@@ -105,7 +110,7 @@ SHAPERS: Mapping[str, Callable[[float, float], Impulses]] = {
     "zv": partial(_apart, 1.0, [1.0, 1.0]),
     "mzv": _mzv,
     "zvd": partial(_apart, 1.0, [1.0, 2.0, 1.0]),
-    "ei": _ei,
+    "ei": extra_insensitive,
     "2hump-ei": partial(
         _fitted, "2hump-ei", 0.3,
         ((0.0, 0.0, 0.0, 0.0), (0.49890, 0.16270, -0.54262, 6.16180),

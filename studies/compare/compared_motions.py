@@ -18,8 +18,11 @@ from quietarm.ocp import (
     task_difference,
 )
 from quietarm.ocp.checks import takes
+from quietarm.ocp.figures import rms
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
+from quietarm.ocp.task import MARGIN
+from quietarm.studies.compare.acting_in_band import ActingInBand, acting_in_band
 from quietarm.views.pictures.meaning import meaning_of
 
 SAMPLES = 2000
@@ -51,6 +54,14 @@ class ComparedMotion:
         Why there is no such motion.
     meaning : str
         What it is in the grammar of pictures, as ``"plan"``; empty of an input shaper's motion.
+    duration : float or None
+        How long it takes [s].
+    rms_torque : float or None
+        Root mean square of the torque, or force, over the move; the largest of several joints.
+    acting : ActingInBand or None
+        When the tool may act after it, where a band was given.
+    is_baseline : bool
+        Whether it is what is used in place of a plan.
     """
 
     name: str
@@ -64,6 +75,10 @@ class ComparedMotion:
     seconds: float | None = None
     why: str = ""
     meaning: str = ""
+    duration: float | None = None
+    rms_torque: float | None = None
+    acting: ActingInBand | None = None
+    is_baseline: bool = False
 
     @property
     def task(self) -> PointToPoint:
@@ -83,9 +98,12 @@ def judge_motion(
 ) -> ComparedMotion:
     """Evaluate a motion of a task's move within ranges of parameter errors, and by its limits.
 
-    With samples, also the insensitivity, and percentiles over that many random plants.
+    The motion keeps its own duration. With samples, also the insensitivity, and percentiles over
+    that many random plants. For a task with a band it is judged by the time to act, in their place
+    and in that of the worst residual.
     """
     candidate = moved if isinstance(moved, JudgedMotion) else moved.candidate
+    task = replace(task, duration=candidate.task.duration)
     nominal = JudgedMotion(task.certain, candidate.path)
     exceeded = nominal.motion.exceeded(task.limits, OVERRUN)
     judged = ComparedMotion(
@@ -94,40 +112,49 @@ def judge_motion(
         float(task.residual_window),
         exceeded=tuple(limit.label for limit in task.limits if limit.name in exceeded),
         meaning=meaning_of(moved),
+        duration=task.duration,
+        rms_torque=rms("torque")(nominal),
     )
     if isinstance(moved, Plan):
-        uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
-        motion = moved.candidate.on(uncertain)
-        judged = replace(
-            judged,
-            worst=worst_of(motion),
-            robustness=evaluate_robustness(motion, ranges, samples=samples)
-            if ranges and samples
-            else None,
-            parameters=moved.profile.size,
-            turns_back=moved.turns_back,
-        )
-    elif ranges:
-        judged = replace(judged, worst=worst_case(nominal, ranges))
-    return (
-        judged if isinstance(moved, JudgedMotion) else replace(judged, seconds=moved.record.seconds)
+        judged = replace(judged, parameters=moved.profile.size, turns_back=moved.turns_back)
+    if not isinstance(moved, JudgedMotion):
+        judged = replace(judged, seconds=moved.record.seconds)
+    if task.band is not None:
+        certain = candidate.on(task.certain)
+        return replace(judged, acting=acting_in_band(certain, task.band, ranges))
+    if not isinstance(moved, Plan):
+        return replace(judged, worst=worst_case(nominal, ranges)) if ranges else judged
+    uncertain = replace(nominal.task, uncertainty=Uncertainty(ranges) if ranges else None)
+    motion = moved.candidate.on(uncertain)
+    robustness = (
+        evaluate_robustness(motion, ranges, samples=samples) if ranges and samples else None
     )
+    return replace(judged, worst=worst_of(motion), robustness=robustness)
 
 
-def refuse_other_moves(tasks: Mapping[str, PointToPoint]) -> None:
-    """ValueError unless tasks are one move; limits, errors and residual windows may differ."""
+def refuse_other_moves(tasks: Mapping[str, PointToPoint], any_duration: bool = False) -> None:
+    """ValueError unless tasks are one move; limits, errors and residual windows may differ.
+
+    So may durations, if any will do.
+    """
     (first, wanted), *rest = ((name, _bare(task)) for name, task in tasks.items())
     for name, task in rest:
-        if difference := task_difference(task, wanted):
+        alike = replace(task, duration=wanted.duration)
+        if difference := task_difference(alike if any_duration else task, wanted):
+            only_duration = not any_duration and not task_difference(alike, wanted)
+            remedy = (
+                ", or give a --band: motions of any duration are then compared by the time to act"
+            )
             raise ValueError(
                 f"{name} is of another move than {first}: its {difference}; compare plans of one "
-                "move"
+                f"move{remedy if only_duration else ''}"
             )
 
 
 def _bare(task: PointToPoint) -> PointToPoint:
     default: Any = None
-    return replace(task.certain, bounds={}, torque_speed=None, residual_window=default)
+    bare = replace(task.certain, bounds={}, torque_speed=None, residual_window=default)
+    return replace(bare, band=None, margin=MARGIN)
 
 
 def merged_ranges(tasks: Iterable[PointToPoint]) -> dict[str, float]:

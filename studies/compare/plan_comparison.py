@@ -2,20 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from quietarm.models import Plant
 from quietarm.models.joint_motion import ROTARY
-from quietarm.ocp import Plan, PointToPoint, QuietarmError
-from quietarm.ocp.checks import takes
-from quietarm.ocp.figures import figures_in
-from quietarm.ocp.limits import COMPARISON
+from quietarm.ocp import JudgedMotion, Plan, PointToPoint, QuietarmError
+from quietarm.ocp.checks import takes, unknown
+from quietarm.ocp.figures import ACTS_AFTER, added_figures, figures_in
+from quietarm.ocp.limits import COMPARISON, QUANTITIES
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
-from quietarm.studies.compare.baselines import TOPPRA, baseline, choose_baselines
+from quietarm.ocp.task import RANGE_OF_BAND
+from quietarm.ocp.uncertainty import FREQUENCY
+from quietarm.studies.compare.acting_in_band import refuse_still
+from quietarm.studies.compare.acting_report import (
+    acting_columns,
+    acting_table,
+    answer_of,
+    few_by_residual,
+    few_to_draw,
+    title_of_answer,
+)
+from quietarm.studies.compare.baselines import (
+    EI_OF_BAND,
+    S_CURVE,
+    TOPPRA,
+    baseline,
+    choose_baselines,
+    fastest_baseline,
+    meaning_of_baseline,
+)
 from quietarm.studies.compare.compared_motions import (
     SAMPLES,
     ComparedMotion,
@@ -25,6 +46,9 @@ from quietarm.studies.compare.compared_motions import (
 )
 from quietarm.views import pictures
 from quietarm.views.report import Report
+from quietarm.views.report.acting_words import ranges_words
+from quietarm.views.report.report import table_in_markdown
+from quietarm.views.report.terminal import width_of_table
 from quietarm.views.report.words import (
     note_lines,
     title_of,
@@ -32,11 +56,26 @@ from quietarm.views.report.words import (
     unit_of_way,
     window_words,
 )
-from quietarm.views.tips import tip_scale
+from quietarm.views.tips import tip_scale, tip_words
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _WHY = "why there is none"
 """Column of a table for files; a page lists the reasons below."""
 _WINDOW = "residual window [s]"
+_DURATION = "duration [s]"
+WIDTH = 100
+"""Letters in a line of a page's table; further columns stand in a table below it."""
+
+
+OWN = "own"
+PLANS = "plan"
+BOTH = "both"
+DURATIONS = (OWN, PLANS, BOTH)
+"""Durations of baselines: the shortest of each, the first plan's, or a row for each."""
+_MOST_TOLERATED = 0.2
+"""By EI, of the vibration: beyond it two impulses nearly do."""
 
 
 @takes(plans={str: Plan}, task=PointToPoint)
@@ -47,6 +86,7 @@ def compare_plans(
     samples: int = SAMPLES,
     *,
     task: PointToPoint | None = None,
+    durations: str | None = None,
 ) -> list[ComparedMotion]:
     """Evaluate plans of one move and baselines for it, in this order.
 
@@ -58,11 +98,16 @@ def compare_plans(
     baselines : sequence of str
         Names of `BASELINES`, or "all".
     ranges : mapping of str to float, optional
-        Largest relative parameter errors by name; by default those that the plans are made for.
+        Largest relative parameter errors by name; by default those that the plans are made for, and
+        with a band 5 % of the frequency if they are made for none.
     samples : int
-        Random plants for the percentiles.
+        Random plants for the percentiles; with a band there are none.
     task : PointToPoint, optional
-        Move and limits, in the place of the first plan's.
+        Move, limits, energy and band, in the place of the first plan's. With a band motions are
+        judged by the time until the tip stays within, and plans may be of several durations.
+    durations : {"own", "plan", "both"}, optional
+        How long baselines take: the shortest time of each within the limits, as long as the first
+        plan, or a row of each. By default their own with a band and limits, else the plan's.
 
     Returns
     -------
@@ -76,27 +121,77 @@ def compare_plans(
     """
     names = choose_baselines(baselines)
     tasks = {"the move": task} if task else {}
-    tasks |= {name: plan.task for name, plan in plans.items()}
-    refuse_other_moves(tasks)
+    energy = None if task is None else {"energy": task.energy}
+    tasks |= {name: replace(plan.task, **energy or {}) for name, plan in plans.items()}
+    first = next(iter(tasks.values()))
+    banded = next((planned for planned in tasks.values() if planned.band is not None), first)
+    first = replace(first, band=banded.band, margin=banded.margin)
+    refuse_other_moves(tasks, any_duration=first.band is not None)
     window = max(planned.residual_window for planned in tasks.values())
-    task = replace(next(iter(tasks.values())), residual_window=window)
+    task = replace(first, residual_window=window)
     ranges = ranges or merged_ranges(tasks.values())
-    judged = [
-        judge_motion(
-            name,
-            plan,
-            ranges,
-            task,
-            samples,
-        )
-        for name, plan in plans.items()
-    ]
-    for name in names:
-        try:
-            judged.append(judge_motion(name, baseline(name, task), ranges, task, samples))
-        except (QuietarmError, ValueError) as error:
-            judged.append(ComparedMotion(name, why=str(error)))
+    if task.band is not None:
+        refuse_still(task)
+        ranges = ranges or RANGE_OF_BAND
+    durations = _durations(durations, task)
+    judged = [judge_motion(name, plan, ranges, task, samples) for name, plan in plans.items()]
+    for kind in (OWN, PLANS):
+        if durations in (kind, BOTH):
+            suffix = f" in {task.duration:.4g} s" if (durations, kind) == (BOTH, PLANS) else ""
+            make = fastest_baseline if kind == OWN else baseline
+            judged += [
+                _judged_baseline(name, suffix, make, ranges, task, samples) for name in names
+            ]
     return judged
+
+
+def _durations(durations: str | None, task: PointToPoint) -> str:
+    """How long baselines take; ValueError where nothing says how short their own times are."""
+    if durations is None:
+        return OWN if task.band is not None and task.limits else PLANS
+    if durations not in DURATIONS:
+        raise ValueError(unknown("durations", durations, DURATIONS))
+    if durations != PLANS and not task.limits:
+        raise ValueError(
+            f"durations are {durations!r}, and the move has no limits, so that no time is the "
+            "shortest; plan it with some, such as --acceleration-limit 40, or take 'plan'"
+        )
+    return durations
+
+
+def _judged_baseline(
+    name: str,
+    suffix: str,
+    make: Callable[..., Plan | JudgedMotion],
+    ranges: Mapping[str, float],
+    task: PointToPoint,
+    samples: int,
+) -> ComparedMotion:
+    """A baseline as `make` makes it, or why there is none."""
+    try:
+        tolerated = None
+        if name == EI_OF_BAND and task.band_limit is not None:
+            tolerated = _tolerated(task, task.band_limit, ranges)
+        moved = make(name, task, tolerated)
+        judged = judge_motion(name + suffix, moved, ranges, task, samples)
+        meaning = judged.meaning or meaning_of_baseline(name)
+        return replace(judged, meaning=meaning, is_baseline=True)
+    except (QuietarmError, ValueError) as error:
+        return ComparedMotion(name + suffix, why=str(error), is_baseline=True)
+
+
+def _tolerated(task: PointToPoint, limit: float, ranges: Mapping[str, float]) -> float:
+    """Share of the S-curve's vibration that a residual limit allows: the band over its margin."""
+    moved = fastest_baseline(S_CURVE, task) if task.limits else baseline(S_CURVE, task)
+    unshaped = moved if isinstance(moved, JudgedMotion) else moved.candidate
+    error = ranges.get(FREQUENCY, RANGE_OF_BAND[FREQUENCY])
+    swing = max(unshaped.perturbed({FREQUENCY: e}).residual for e in (-error, 0.0, error))
+    if swing <= limit:
+        raise ValueError(
+            f"the S-curve leaves {tip_words(swing, task.plant.tip_unit)} without a shaper, which "
+            f"fits the band; take {S_CURVE}"
+        )
+    return min(limit / swing, _MOST_TOLERATED)
 
 
 def motions_table(
@@ -115,8 +210,11 @@ def _cells(
     if motion is None:
         yield _WHY, judged.why
         return
+    yield _DURATION, judged.duration
     yield "energy [J]", motion.energy
     shown, scale = tip_scale(tip_unit)
+    if judged.acting is not None:
+        yield from acting_columns(judged.acting, shown, scale).items()
     yield f"residual [{shown}]", scale * motion.residual
     yield _WINDOW, judged.window
     if judged.worst is not None:
@@ -130,9 +228,12 @@ def _cells(
             words = "none" if ends is None else f"{100 * ends[0]:.2g} to {100 * ends[1]:.2g} %"
             yield f"{sweep.name} within {100 * TOLERATED:g} %", words
     for figure in figures_in(COMPARISON):
-        if figure.name not in RESIDUAL_AND_ENERGY:
+        if figure.name not in (*RESIDUAL_AND_ENERGY, ACTS_AFTER):
             unit = figure.unit.of(joint, tip_unit)
             yield f"{figure.label.of(joint)} [{unit or '-'}]", motion.get(figure.name)
+    torque = QUANTITIES["torque"]
+    effort = torque.unit.of(joint, tip_unit)
+    yield f"RMS {torque.words.of(joint)} [{effort}]", judged.rms_torque
     yield "exceeds", ", ".join(judged.exceeded) or None
     yield "time [s]", judged.seconds
 
@@ -142,8 +243,21 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     lengths = [column for column in table if str(column).endswith("[mm]")]
     rounded = table.round(dict.fromkeys(lengths, 3))
     rounded.columns = [_shortened(str(column), rounded.columns) for column in rounded.columns]
-    files_alone = ["parameters", "time [s]", _WHY, _WINDOW]
+    files_alone = ["parameters", "time [s]", _WHY, _WINDOW, _DURATION]
     return rounded.drop(columns=files_alone, errors="ignore")
+
+
+def in_width(table: pd.DataFrame, width: int = WIDTH) -> list[pd.DataFrame]:
+    """Return a table as several that fit into a width, each with the first column."""
+    first, *columns = map(str, table.columns)
+    parts = list[list[str]]()
+    for column in columns:
+        wider = [*(parts[-1] if parts else []), column]
+        if parts and width_of_table(table_in_markdown(table.filter([first, *wider]))) <= width:
+            parts[-1] = wider
+        else:
+            parts.append([column])
+    return [table.filter([first, *part]) for part in parts]
 
 
 def _shortened(heading: str, others: Iterable[str]) -> str:
@@ -170,35 +284,71 @@ def remarks(motions: Sequence[ComparedMotion], unit: str = "rad") -> list[str]:
     ]
     return [
         *(f"{', '.join(names)}: {why}" for why, names in reasons.items()),
+        *(
+            f"{motion.name} passes its limit of {' and '.join(motion.exceeded)}"
+            for motion in motions
+            if motion.acting and motion.exceeded
+        ),
         *([f"The joint turns back on its way: {', '.join(back)}"] if back else []),
     ]
 
 
 def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Report:
-    """Motions as a table, what to know of them, and a picture."""
-    joint = task.plant.joint
-    table = motions_table(motions, joint, task.plant.tip_unit)
+    """Motions as a table, what to know of them, and a picture; by a band who may act first."""
+    plant = task.plant
+    table = motions_table(motions, plant.joint, plant.tip_unit)
     robust = next((motion.robustness for motion in motions if motion.robustness), None)
     ranges = next((motion.worst.errors for motion in motions if motion.worst), {})
+    acting = next((motion.acting for motion in motions if motion.acting), None)
+    further = _own_figures(table, plant) if acting else shown(table)
+    own = [motion for motion in motions if motion.is_baseline and motion.duration]
     return Report(
         "studies/compare/plans.md",
         {
             "title": title_of(task),
-            "shown": shown(table),
-            "remarks": [*remarks(motions, unit_of_way(task.plant)), *note_lines(task.plant)],
+            "answer": answer_of(motions, plant) if acting else "",
+            "acting": in_width(acting_table(motions, plant)) if acting else [],
+            "band": acting and tip_words(acting.band, plant.tip_unit),
+            "within": acting and ranges_words(acting.ranges),
+            "energy": task.energy.label,
+            "shown": in_width(further),
+            "remarks": [
+                *remarks(motions, unit_of_way(plant)),
+                *(_words_of_way(plant) if acting else []),
+                *note_lines(plant),
+            ],
             "errors": list(ranges),
             "window": window_words(
                 next((motion.window for motion in motions if motion.window), task.residual_window)
             ),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
+            "own_durations": any(motion.duration != task.duration for motion in own),
             "ruckig": any("ruckig" in motion.name for motion in motions),
-            "toppra": any(motion.name == TOPPRA for motion in motions),
+            "toppra": any(motion.name.startswith(TOPPRA) for motion in motions),
         },
         {"motions": table},
-        {
-            "motions.png": partial(
-                pictures.motions_figure, motions, title_of_picture(task), task.plant.tip_unit
-            )
-        },
+        {"motions.png": partial(_picture, task, motions)},
     )
+
+
+def _words_of_way(plant: Plant) -> list[str]:
+    """What is assumed of a tip whose way a plant does not say."""
+    if plant.has_path or plant.tip_reach is not None:
+        return []
+    return [f"{plant.name} does not say where its tip goes: it is taken to arrive with the joint"]
+
+
+def _picture(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Figure:
+    tip_unit = task.plant.tip_unit
+    if any(motion.acting for motion in motions):
+        few = few_to_draw(motions)
+        return pictures.acting_figure(few, title_of_answer(motions), tip_unit)
+    return pictures.motions_figure(few_by_residual(motions), title_of_picture(task), tip_unit)
+
+
+def _own_figures(table: pd.DataFrame, plant: Plant) -> pd.DataFrame:
+    """The columns of a table that figures of the user's own have."""
+    units = ((figure, figure.unit_on(plant) or "-") for figure in added_figures())
+    columns = [f"{figure.label_on(plant)} [{unit}]" for figure, unit in units]
+    return table.filter(["motion", *columns])

@@ -1,3 +1,5 @@
+from .acting_figures import acting_figure as acting_figure
+from .acting_figures import draw_acting as draw_acting
 from .comparison_figures import KnownPoint as KnownPoint
 from .comparison_figures import comparison_figure as comparison_figure
 from .comparison_figures import draw_comparison as draw_comparison

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby, zip_longest
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -56,6 +57,22 @@ def show(console: Console, report: Report) -> None:
     text = printable(report.markdown())
     lines = [line for line in text.splitlines() if not line.startswith("![")]
     if not console.is_terminal:
-        widest = max((len(line) for line in lines if line.startswith("|")), default=0)
-        console = Console(file=console.file, width=max(console.width, widest))
+        console = Console(file=console.file, width=max(console.width, _widest_table(lines)))
     console.print(Markdown("\n".join(lines)))
+
+
+def _widest_table(lines: Sequence[str]) -> int:
+    """The width of the widest table of Markdown in lines, 0 if there is none."""
+    widest = 0
+    for is_table, rows in groupby(lines, key=lambda line: line.startswith("|")):
+        if is_table:
+            widest = max(widest, width_of_table("\n".join(rows)))
+    return widest
+
+
+def width_of_table(text: str) -> int:
+    """Return how many columns of a terminal a table of Markdown takes."""
+    heading, _, *rows = text.splitlines()
+    cells = [[cell.strip() for cell in row.split("|")[1:-1]] for row in (heading, *rows)]
+    beside = 2  # of each column: the room between it and the next
+    return sum(max(map(len, column)) + beside for column in zip_longest(*cells, fillvalue=""))

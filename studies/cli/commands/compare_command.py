@@ -11,20 +11,31 @@ import click
 from rich.console import Console
 
 from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import BAND as BAND_OPTIONS
 from quietarm.studies.cli.options import ERROR, SOLVER, busy, command, option
 from quietarm.studies.cli.outputs import REPORT_OPTION, finish
 from quietarm.studies.cli.plants import warn_of_notes
-from quietarm.studies.cli.quantities import MEASURED, once
-from quietarm.studies.cli.types import INPUT, NAMES
+from quietarm.studies.cli.quantities import (
+    BAND,
+    MEASURED,
+    once,
+    parse_energy,
+)
+from quietarm.studies.cli.types import INPUT, NAMES, Named, Parsed
 from quietarm.studies.compare.compared_motions import SAMPLES
+from quietarm.studies.compare.plan_comparison import DURATIONS
 from quietarm.views.report import Report
 from quietarm.views.report.terminal import print_lines
 
 if TYPE_CHECKING:
-    from quietarm.ocp import Front, Plan, Solver
+    from quietarm.ocp import Front, Plan, PointToPoint, Solver
     from quietarm.studies.compare.front_comparison import Comparison
 
 
+_OF_PLANS = [
+    "baselines", "errors", "band", "band_margin", "durations", "energy", "samples",
+]  # fmt: skip
+"""Options that judge plans."""
 _OF_FLOOR = [param.name or "" for param in SOLVER]
 """Options of what solves here: the floor beneath fronts."""
 
@@ -33,6 +44,13 @@ _OF_FLOOR = [param.name or "" for param in SOLVER]
     click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
     option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
     ERROR,
+    *BAND_OPTIONS,
+    option("--durations", type=Named("durations", DURATIONS), help="Plans: how long baselines "
+           "take, the shortest time of each within the limits, as long as the plan, or a row of "
+           "each. [default: own with --band, else plan]"),
+    option("--energy", type=Parsed("energy", parse_energy), help="Plans: what counts as energy "
+           "here, as positive+copper:30 with the windings' heat by the motor constant. [default: "
+           "the plan's]"),
     option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
     option("--reference", type=INPUT,
            help="Fronts: measure IGD+ and additive epsilon against this one."),
@@ -47,14 +65,18 @@ def compare(given: Given) -> None:
     IGD+, additive epsilon, candidates and time; several seeds of a method as median and quartiles.
 
     Plans: energy, residual, the worst case within parameter errors, insensitivity, percentiles,
-    peaks, and the limits that they exceed, beside the cycloid, input shapers, ruckig and toppra.
-    Ruckig needs quietarm[ruckig] and an acceleration limit, toppra quietarm[toppra] and one of
-    acceleration or torque.
+    peaks, and the limits that they exceed, beside the cycloid, S-curves, input shapers, ruckig and
+    toppra. Ruckig needs quietarm[ruckig] and an acceleration limit, toppra quietarm[toppra] and one
+    of acceleration or torque.
+
+    With --band: who may act first within the errors, and at what energy and force. Each baseline
+    takes its own shortest time within the limits.
 
     \b
     Examples:
       quietarm compare nsga2.json vepso.json epsilon.json --output compared
       quietarm compare plan.json robust.json --error frequency=8% --baselines zvd,ruckig
+      quietarm compare plan.json robust.json --band 0.1mm --baselines all
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.ocp import Front, Plan
     from quietarm.studies.compare.load_answers import open_answers
@@ -67,7 +89,16 @@ def compare(given: Given) -> None:
             given.refuse(["reference", "free", *_OF_FLOOR], "is for fronts")
             report = _of_plans(given, plans)
         else:
-            given.refuse(["baselines", "errors", "samples"], "is for plans")
+            of_plans = [
+                "baselines",
+                "errors",
+                "band",
+                "band_margin",
+                "durations",
+                "energy",
+                "samples",
+            ]
+            given.refuse(of_plans, "is for plans")
             if not given.free:
                 given.refuse(_OF_FLOOR, "is for the free motion, which --no-free-motion leaves out")
             report = _of_fronts(given, fronts)
@@ -88,9 +119,31 @@ def _of_plans(given: Given, plans: Mapping[str, Plan]) -> Report:
                 "none; give errors as frequency=10%"
             )
         ranges = {**measured, **ranges}
-    judged = compare_plans(plans, given.baselines or (), ranges, given.samples)
-    first_task = next(iter(plans.values())).task
-    return plans_report(first_task, judged)
+    first = next(iter(plans.values())).task
+    task = _judging(given, first)
+    if task.band is not None:
+        given.refuse(["samples"], "is for residuals, which a band leaves out")
+    judged = compare_plans(
+        plans,
+        given.baselines or (),
+        ranges,
+        given.samples,
+        task=None if task is first else task,
+        durations=given.durations,
+    )
+    return plans_report(task, judged)
+
+
+def _judging(given: Given, task: PointToPoint) -> PointToPoint:
+    """The task of the first plan, with the band and the energy that were typed."""
+    band = given.read_of_plant(BAND, task.plant)
+    if band is not None:
+        task = replace(task, band=band, margin=given.band_margin)
+    elif task.band is None:
+        given.refuse(["band_margin"], "is of a --band, and none is given")
+    elif given.typed("band_margin"):
+        task = replace(task, margin=given.band_margin)
+    return task if given.energy is None else replace(task, energy=given.energy)
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:

@@ -75,6 +75,7 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
     named = {"plan": plan, "robust plan": robust}
     lines = [Line(motion, name) for name, motion in named.items()]
     judged = compare_plans(named, ["cycloid", "zv"], {"frequency": 0.1}, samples=20)
+    by_band = compare_plans(named, ["zv"], task=replace(task, band=1e-3))
     comparison = replace(compare_fronts([gradient, *seeds], fill=False), floor=0.1)
     errors = evaluate_robustness(plan.candidate, {"frequency": 0.1}, samples=1)
     floor = energy_floor(task, starts=1, energy_tolerance=0.5)
@@ -94,6 +95,8 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
         "comparison_figure": of.comparison_figure(comparison),
         "draw_comparison": of.draw_comparison(comparison, small=True).figure,
         "draw_gaps": of.draw_gaps(comparison).figure,
+        "acting_figure": of.acting_figure(by_band, "a move"),
+        "draw_acting": of.draw_acting(by_band).figure,
         "motions_figure": of.motions_figure(judged, "a move"),
         "draw_motions": of.draw_motions(judged).figure,
         "draw_robustness": of.draw_robustness({"plan": errors}, "frequency").figure,

@@ -98,6 +98,43 @@ def test_plans_are_compared_with_baselines_under_errors(done, plan, cycloid):
     assert "+-8 % of frequency" in " ".join(out.split())
 
 
+def test_by_a_band_the_answer_is_who_acts_first(done, plan):
+    """In 100 columns, in a terminal as in a pipe, by the energy that is typed."""
+    plan.save("ours.json")
+    line = "compare ours.json --baselines zvd --band 1mm --energy positive+copper:0.12"
+    out = done(f"{line} --output out")
+    assert "Within 1 mm for frequency errors up to 5 %: " in out
+    assert "positive+copper:0.12" in " ".join(out.split())
+    assert max(map(len, out.splitlines())) <= 100
+    table = pd.read_csv("out/motions.csv").set_index("motion")
+    errors = [f"acts after [s] at {error:g} %" for error in (0, 2, 5, 10)]
+    assert table[errors].notna().all(axis=None)
+    # the plan has no limits: no time is the shortest
+    assert table["duration [s]"].tolist() == [plan.task.duration] * 2
+
+
+def test_tables_without_a_band_fit_into_100_columns(done, plan, cycloid):
+    plan.save("ours.json")
+    cycloid.save("plain.json")
+    out = done("compare ours.json plain.json --baselines zv --error frequency=8% --samples 50")
+    assert max(map(len, out.splitlines())) <= 100
+
+
+REFUSED_BANDS = {
+    "--band 0": "band is 0 m; give a positive number",
+    "--band 0.1mm --samples 9": "--samples is for residuals, which a band leaves out",
+    "--margin 2": "--margin is of a --band, and none is given",
+    "--band 1mm --durations own": "the move has no limits, so that no time is the shortest",
+    "--durations now": "unknown durations 'now'; did you mean 'own'?",
+}
+
+
+@pytest.mark.parametrize(("options", "why"), REFUSED_BANDS.items(), ids=REFUSED_BANDS)
+def test_a_band_that_has_no_meaning_is_refused(refused, folder, plan, options, why):
+    plan.save("ours.json")
+    assert why in refused(f"compare ours.json {options}")
+
+
 def test_a_folder_without_fronts_is_refused(refused, folder):
     (folder / "empty").mkdir()
     assert "empty holds no fronts; give a folder of a bench, or files" in refused("compare empty")
