@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
+from quietarm.models import JointMotion
 from quietarm.models.dimensions import ACCELERATION, ANGLE, EFFORT, SPEED, TORQUE, WAY, Words
 from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
@@ -184,6 +185,22 @@ class Plan(MotionAnswer):
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `JudgedMotion.sample`."""
         return self.candidate.sample(times)
+
+    def commanded(self, sample_rate: float = 1000.0) -> Trajectory:
+        """Return the motion that a controller is given, rows at a rate [Hz].
+
+        Its joints are the set points of the plant's drive, where it has one whose loops are known:
+        the load then follows the planned path, which `sample.path` has. All else is as planned. The
+        last row is the first tick at or after arrival, or at which the servo has settled.
+        """
+        ticks = ticks_of_move(self.task.duration, sample_rate)
+        if not self.candidate.inverts_drive:
+            return self.sampled(np.arange(ticks + 1) / sample_rate)
+        points = self.candidate.set_points(sample_rate)
+        planned = self.sampled(points.time)
+        (joint,) = planned.sample.joints
+        asked = JointMotion(points.place, points.speed, points.acceleration, joint.jerk)
+        return Trajectory(planned.time, planned.sample._replace(joints=[asked]))
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

@@ -113,6 +113,8 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
     given.refuse(LINE_NAMES, OF_ROBOT)
     parameters = parameters_of(kind, given.parameters)
     plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
+    if given.drive:
+        plant = replace(plant, drive=given.read_drive(plant))
     uncertainty = build_uncertainty(kind, given.errors, parameters)
     values = dict(parameters)
     for name in OF_MOVES:
@@ -122,6 +124,7 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
 
 def _of_robot(given: Given, robot: Robot, known: Mapping[str, float]) -> Asked:
     """A robot on the path that was typed; it may have multiples of its payload, and durations."""
+    given.refuse(["drive"], "is for a plant of one joint; a robot's file has its coulomb")
     durations = (known["duration"],) if "duration" in known else _needed(given, "duration", robot)
     multiples = parse_parameters(RobotOnPath, given.parameters)
     least = {name: min(values) for name, values in multiples.items()}

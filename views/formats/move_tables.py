@@ -109,8 +109,8 @@ def table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     robot each axis of its tip's frame along which that moves, `tip_x_mm`; of a robust plan in each
     scenario, which its heading names.
     """
-    times = times_of(plan, rate)
-    motion = plan.sampled(times)
+    motion = plan.commanded(rate)
+    times = motion.time
     tips = _tips(plan, times)
     plant = plan.task.plant
     sample = motion.sample

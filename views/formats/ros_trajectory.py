@@ -10,7 +10,7 @@ from quietarm.ocp import Plan
 from quietarm.ocp.escapes import yaml_string
 from quietarm.views.formats.between_rows import interpolation_note
 from quietarm.views.formats.export_format import ExportFormat, ExportSetting
-from quietarm.views.formats.move_tables import RATE, times_of
+from quietarm.views.formats.move_tables import RATE
 from quietarm.views.report.templates import templates
 
 
@@ -25,7 +25,7 @@ class RosTrajectory(ExportFormat):
 
     def content(self, plan: Plan, *args: Any, rate: float, joint: str) -> str:
         """A single joint has the name that is given; those of a robot the plant's."""
-        motion = plan.sampled(times_of(plan, rate))
+        motion = plan.commanded(rate)
         orders = [
             np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
             for order in range(3)

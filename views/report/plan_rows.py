@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quietarm.models import Plant, RobotOnPath
-from quietarm.models.dimensions import ACCELERATION
+from quietarm.models.dimensions import ACCELERATION, EFFORT
+from quietarm.models.drive import NUMBERS, unit_of
+from quietarm.models.joint_motion import LINEAR
 from quietarm.models.notes import about
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -28,6 +30,7 @@ from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT, REST
+from quietarm.ocp.simulation.servo import Mode
 from quietarm.views.report.robot_rows import way_rows
 from quietarm.views.report.words import (
     move_of,
@@ -78,6 +81,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         ("status", plan.status.text),
         _verified_row(plan),
         *_full_rows(plan),
+        *_drive_rows(plan),
         ("time", f"{plan.record.seconds:.2f} s"),
     ]
 
@@ -218,6 +222,66 @@ def _full_rows(plan: Plan) -> list[Row]:
             f"whole equations, without modes and tables{remedy}",
         )
     ]
+
+
+def _drive_rows(plan: Plan) -> list[Row]:
+    """The drive, and what its simulation says of a plan; what is unknown of it is named."""
+    plant = plan.task.plant
+    drive = plant.drive
+    if drive is None:
+        return []
+    figures = plan.candidate.on_drive
+    if figures is None:
+        return [*drive_rows(plant), ("on the drive", "not simulated: " + _LOOPS)]
+    way = "m" if plant.joint == LINEAR else "rad"
+    following = tip_words(figures.following_error, way)
+    off_path = tip_words(figures.off_path, way)
+    effort = EFFORT.of(plant.joint)
+    of_tip = "" if plant.joint == LINEAR else " of the tip from the joint"
+    heat = "" if figures.heat is None else f", {figures.heat:.4g} J of copper loss"
+    return [
+        *drive_rows(plant),
+        *_servo_rows(plan),
+        (
+            "on the drive",
+            f"{_tip(plan.task, figures.residual)} left{of_tip}, follows within {following}, the "
+            f"load is within {off_path} of the plan, peak {figures.peak_torque:.4g} {effort} with "
+            f"friction{heat}",
+        ),
+    ]
+
+
+def _servo_rows(plan: Plan) -> list[Row]:
+    """How the plan accounts for the servo."""
+    held, moving = plan.candidate.modes_on_drive
+    words = f"{_hertz(held)} with the joint held, {_hertz(moving)} on the servo"
+    if plan.candidate.inverts_drive:
+        return [("set points", f"of the load's path through the drive; {words}")]
+    return [("set points", f"the planned path, as recorded on the moving servo; {words}")]
+
+
+def _hertz(mode: Mode) -> str:
+    return f"{mode.frequency / math.tau:.5g} Hz ({100 * mode.damping:.2g} %)"
+
+
+def drive_rows(plant: Plant) -> list[Row]:
+    """What is known of a plant's drive, and what is not."""
+    drive = plant.drive
+    if drive is None:
+        return []
+    known = [name for name in NUMBERS if name not in drive.unknown]
+    words = [
+        f"{name.replace('_', ' ')} {getattr(drive, name):.4g} {unit_of(name, plant.joint)}"
+        for name in known
+    ]
+    words.append(f"feed-forward {_FORWARD[drive.feedforward]}")
+    unknown = ", ".join(name.replace("_", " ") for name in drive.unknown)
+    rows = [("drive", ", ".join(words))]
+    return rows + ([("drive unknown", unknown)] if unknown else [])
+
+
+_FORWARD = {"acceleration": "of speed and acceleration", "speed": "of speed", "none": "none"}
+_LOOPS = "give position_loop and speed_loop"
 
 
 _LEFT = 1e-4
