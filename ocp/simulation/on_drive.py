@@ -20,9 +20,9 @@ from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import LINEAR, JointMotion
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.simulation.servo import (
-    Asked,
     Moving,
     Servo,
+    SetPoint,
     grows,
     servo_law,
     state_rates,
@@ -165,7 +165,8 @@ class _Step:
     def __init__(self, servo: Servo, length: float) -> None:
         self.servo = servo
         self.length = length
-        delay = (servo.drive.dead_time or 0.0) / length
+        # the effort is held over a step, which delays it by half of one
+        delay = max(0.0, (servo.drive.dead_time or 0.0) / length - 0.5)
         self.whole = int(delay)
         self.share = delay - self.whole
 
@@ -207,7 +208,7 @@ def _one_step(servo: Servo, length: float, whole: int, share: float) -> ca.Funct
     row = ca.SX.sym("row", 3)
     state, integral, sent = ca.vertsplit(full, [0, size, size + 1, full.numel()])
     now = Moving.of(state, servo)
-    asked = Asked(*ca.vertsplit(row))
+    asked = SetPoint(*ca.vertsplit(row))
     effort, integrating = servo_law(servo, now.motor, now.motor_speed, integral, asked)
     sent = ca.vertcat(effort, sent)  # the latest first
     given = (1 - share) * sent[whole] + share * sent[whole + 1]

@@ -197,7 +197,7 @@ def state_rates(servo: Servo, state: ca.SX, effort: ca.SX, rubbing: ca.SX) -> ca
     return ca.vertcat(*bodies, now.dW, *ddW)
 
 
-class Asked(NamedTuple):
+class SetPoint(NamedTuple):
     """What a servo is asked for at one time: place, speed and acceleration."""
 
     place: ca.SX
@@ -206,7 +206,7 @@ class Asked(NamedTuple):
 
 
 def servo_law(
-    servo: Servo, motor: ca.SX, speed: ca.SX, integral: ca.SX, asked: Asked
+    servo: Servo, motor: ca.SX, speed: ca.SX, integral: ca.SX, asked: SetPoint
 ) -> tuple[ca.SX, ca.SX]:
     """Effort of the motor [N m], and the rate of the speed loop's integral."""
     drive = servo.drive
@@ -228,7 +228,7 @@ def _modes_on_servo(servo: Servo) -> tuple[complex, ...]:
     integral = ca.SX.sym("integral")
     delayed = ca.SX.sym("delayed")
     now = Moving.of(state, servo)
-    here = Asked(ca.SX(servo.place), ca.SX(0), ca.SX(0))
+    here = SetPoint(ca.SX(servo.place), ca.SX(0), ca.SX(0))
     effort, integrating = servo_law(servo, now.motor, now.motor_speed, integral, here)
     dead = servo.drive.dead_time or 0.0
     given, sending = effort, ca.SX(0)

@@ -14,6 +14,7 @@ import click
 from quietarm.models import Plant, Robot, RobotOnPath
 from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
+from quietarm.ocp.simulation.servo import as_held
 from quietarm.ocp.task import OF_MOVES
 from quietarm.studies.cli.plants import (
     build_plant,
@@ -94,6 +95,8 @@ def _make_task(given: Given, kind: Kind, asked: Asked) -> PointToPoint:
         **given.pick(*_OTHERS),
         uncertainty=asked.uncertainty,
     )
+    if task.plant.drive is not None and task.plant.drive.has_loops:
+        as_held(task.plant, task.target)  # refuses a frequency that is of no structure on the servo
     warn_of_payload(kind, plant, asked.values)
     if isinstance(kind, Robot) and not _shows_rows(given):
         warn_of_notes(plant)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quietarm.models import Plant, RobotOnPath
-from quietarm.models.dimensions import ACCELERATION, EFFORT
+from quietarm.models.dimensions import ACCELERATION, EFFORT, TORQUE
 from quietarm.models.drive import NUMBERS, unit_of
 from quietarm.models.joint_motion import LINEAR
 from quietarm.models.notes import about
@@ -20,6 +20,7 @@ from quietarm.ocp import (
     Plan,
     PointToPoint,
     ShapedCycloid,
+    SolverFailedError,
     Worst,
 )
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
@@ -28,6 +29,7 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
+from quietarm.ocp.planning.cycle import Cycle
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT, REST
 from quietarm.ocp.simulation.servo import Mode
@@ -82,6 +84,7 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         _verified_row(plan),
         *_full_rows(plan),
         *_drive_rows(plan),
+        *_cycle_rows(plan),
         ("time", f"{plan.record.seconds:.2f} s"),
     ]
 
@@ -230,7 +233,10 @@ def _drive_rows(plan: Plan) -> list[Row]:
     drive = plant.drive
     if drive is None:
         return []
-    figures = plan.candidate.on_drive
+    try:
+        figures = plan.candidate.on_drive
+    except SolverFailedError as error:
+        return [*drive_rows(plant), ("on the drive", f"warning: {error}")]
     if figures is None:
         return [*drive_rows(plant), ("on the drive", "not simulated: " + _LOOPS)]
     way = "m" if plant.joint == LINEAR else "rad"
@@ -249,6 +255,50 @@ def _drive_rows(plan: Plan) -> list[Row]:
             f"friction{heat}",
         ),
     ]
+
+
+def _cycle_rows(plan: Plan) -> list[Row]:
+    """Effort and energy of a cycle there and back, and what builds up over many."""
+    cycle = plan.cycles
+    if cycle is None:
+        return []
+    plant = plan.task.plant
+    shuttle = cycle.shuttle
+    effort = EFFORT.of(plant.joint)
+    torques = ", ".join(f"{torque:.4g}" for torque in cycle.rms_torques)
+    heat = "heat unknown without motor_constant in --drive"
+    if cycle.heat is not None:
+        heat = f"{cycle.heat:.4g} J ({cycle.heat / cycle.time:.4g} W) of copper loss"
+    worst = cycle.worst()
+    return [
+        (
+            "cycle",
+            f"there and back in {cycle.time:.4g} s with a dwell of {shuttle.dwell:g} s after each "
+            f"move: RMS {TORQUE.of(plant.joint)} {torques} {effort}, {heat}",
+        ),
+        (
+            "energy of a cycle",
+            f"{cycle.energy:.4g} J, or {cycle.energy_with_recovery:.4g} J where the DC link gives "
+            "back what the motor generates",
+        ),
+        (f"left in {_cycles(shuttle.repeat)}", _builds_up(plan.task, cycle)),
+        (f"if {_signed(worst.errors)}", _builds_up(plan.task, worst)),
+    ]
+
+
+def _cycles(count: int) -> str:
+    return "1 cycle" if count == 1 else f"{count} cycles"
+
+
+def _builds_up(task: PointToPoint, cycle: Cycle) -> str:
+    """How the vibration after each move changes from the first to the last."""
+    left = cycle.left
+    if left.max() < REST * task.smallness:
+        return f"at rest after each move (below {_tip(task, REST * task.smallness)})"
+    return (
+        f"{_tip(task, left[0])} after the first move, {_tip(task, left[-1])} after the last, "
+        f"{_tip(task, left.max())} at most"
+    )
 
 
 def _servo_rows(plan: Plan) -> list[Row]:
