@@ -4,6 +4,7 @@ from .dimensions import Words as Words
 from .drawing import Body as Body
 from .drawing import flexible_link as flexible_link
 from .drawing import rigid_link as rigid_link
+from .drive import Drive as Drive
 from .dual_link import DualLinkManipulator as DualLinkManipulator
 from .flexible_beam import FlexibleBeam as FlexibleBeam
 from .joint_motion import Expression as Expression

@@ -9,8 +9,9 @@ from __future__ import annotations
 import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import Field, field, fields
+from dataclasses import Field, dataclass, field, fields
 from importlib import import_module
+from inspect import get_annotations
 from numbers import Real
 from pathlib import Path
 from pkgutil import iter_modules
@@ -20,11 +21,12 @@ import casadi as ca
 import numpy as np
 
 from quietarm.models.drawing import Body, rigid_link
+from quietarm.models.drive import Drive
 from quietarm.models.final import refuse_overridden
 from quietarm.models.joint_motion import LINEAR, ROTARY, Expression, JointMotion, Modes
 from quietarm.models.notes import Note
 from quietarm.models.rates import rates_along
-from quietarm.models.validation import check_contract, check_passive
+from quietarm.models.validation import check_contract, check_drive, check_passive
 
 if TYPE_CHECKING:
     from quietarm.ocp import PointToPoint
@@ -118,7 +120,23 @@ class Follower(Protocol):
         ...
 
 
-class Plant(ABC):
+if TYPE_CHECKING:
+
+    @dataclass(frozen=True)
+    class _Driven:
+        """What editors know of every plant's keyword `drive`."""
+
+        drive: Drive | None = field(default=None, kw_only=True)
+
+else:
+
+    class _Driven:
+        """A plant gets its field when it is defined: `Plant` itself is no dataclass."""
+
+        drive = None
+
+
+class Plant(_Driven, ABC):
     """Joints with flexible modes: subclass it as a frozen dataclass, in one file.
 
     A subclass sets `name` and `modes`, declares its parameters as float fields (with `parameter`)
@@ -129,6 +147,11 @@ class Plant(ABC):
     A plant of several joints moves along a path. What the equations are then given as the joint's
     angle is the place on the path; it gives `joints`, and `torques` in place of `torque`. Where the
     tips' displacements depend on the place it gives `tips_at` in place of `tip_displacements`.
+
+    Parameters
+    ----------
+    drive : Drive, optional
+        The drive of the joint, a keyword of every plant of one joint.
 
     Raises
     ------
@@ -168,6 +191,7 @@ class Plant(ABC):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
+        _declare_drive(cls)
         refuse_overridden(
             cls,
             Plant,
@@ -234,6 +258,17 @@ class Plant(ABC):
     def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
         """Torque of every one of the `joints` [N m]; by default the one joint's."""
         return [self.torque(path, W, dW, ddW)]
+
+    @final
+    def driving_torques(
+        self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes
+    ) -> Sequence[Expression]:
+        """Torque that every drive gives [N m]: `torques`, and Coulomb friction of the `drive`."""
+        torques = self.torques(path, W, dW, ddW)
+        if self.drive is None or not self.drive.coulomb:
+            return torques
+        joints = self.joints(path)
+        return [torque + self.drive.friction(j.speed) for torque, j in zip(torques, joints)]
 
     def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
         """Displacements of the tips at a place of the path; by default the same everywhere."""
@@ -432,6 +467,16 @@ class Plant(ABC):
         """
         check_contract(self)
         check_passive(self)
+        check_drive(self)
+
+
+def _declare_drive(kind: type[Plant]) -> None:
+    """Give a class of plants the keyword `drive`, which its decorator makes a field of."""
+    if any(hasattr(base, "__dataclass_fields__") for base in kind.__mro__[1:]):
+        return
+    metadata = {"content": True, "if_stated": True, "meaning": "servo, transmission, friction"}
+    kind.__annotations__ = {**get_annotations(kind), "drive": Drive | None}
+    kind.drive = field(default=None, kw_only=True, metadata=metadata)
 
 
 def _kind_of(entry: Field[Any]) -> str:

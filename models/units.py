@@ -40,6 +40,16 @@ UNITS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "N m s/rad": ("N m s/rad (10)", {"Nms/rad": 1.0}),
     "N m^2": ("N m^2 (80)", {"Nm2": 1.0}),
     "Pa": ("pascal (7e10) or 70GPa", {"Pa": 1.0, "MPa": 1e-6, "GPa": 1e-9}),
+    "1/s": ("1/s (60), 60/s or 9.5Hz", {"1/s": 1.0, "/s": 1.0, "Hz": 0.5 / math.pi}),
+    "Hz": ("hertz (40) or 40Hz", {"Hz": 1.0, "kHz": 1e-3, "rad/s": 2 * math.pi}),
+    "m/N": (
+        "m/N (1.7e-7), 0.17um/N, or a stiffness as 6N/um",
+        {"m/N": 1.0, "mm/N": 1e3, "um/N": 1e6, "µm/N": 1e6, "nm/N": 1e9},
+    ),
+    "rad/N/m": (
+        "rad/(N m) (1e-4), 0.1mrad/Nm, or a stiffness as 8kNm/rad",
+        {"rad/Nm": 1.0, "mrad/Nm": 1e3},
+    ),
     "-": ("a number (0.1) or 10%", {"%": 100.0}),
 }
 """By the SI unit of a quantity: examples, and how many of each unit it is typed in make one.

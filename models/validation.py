@@ -23,8 +23,10 @@ import numpy as np
 
 from quietarm.models import at_rest
 from quietarm.models.compiled import Compiled
+from quietarm.models.dimensions import INERTIA
+from quietarm.models.drive import Drive
 from quietarm.models.joint_motion import Array, Expression, JointMotion
-from quietarm.models.number_checks import words_of_error
+from quietarm.models.number_checks import quoted, words_of_error
 
 if TYPE_CHECKING:
     from quietarm.models.plant import Plant
@@ -73,6 +75,33 @@ def check_contract(plant: Plant) -> None:
 def check_passive(plant: Plant) -> None:
     """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
     at_rest.refuse_active_rest(plant.name, *_slopes_at_rest(plant))
+
+
+def check_drive(plant: Plant) -> None:
+    """Refuse what is no drive, a drive of several joints, and a rotor that is not of the plant."""
+    drive = plant.drive
+    if drive is None:
+        return
+    if not isinstance(drive, Drive):
+        raise TypeError(f"drive is {quoted(drive)}; give {Drive.example}")
+    if plant.has_path:
+        raise ValueError(
+            f"{plant.name} has a path and a drive was given, which is for a plant of one joint; "
+            "leave it out, and give a robot its coulomb and rotor_inertia"
+        )
+    if not drive.rotor:
+        return
+    still = [0.0] * plant.modes
+    path = JointMotion(0.0, 0.0, 1.0)
+    pushed = [float(rate) for rate in plant.modal_accelerations(path, still, still)]
+    held = float(plant.torque(JointMotion(0.0, 0.0, 0.0), still, still, still))
+    inertia = float(plant.torque(path, still, still, pushed)) - held
+    if drive.rotor >= inertia:
+        unit = INERTIA.of(plant.joint)
+        raise ValueError(
+            f"rotor is {drive.rotor:g} {unit} of {inertia:.4g} {unit} that move without what "
+            "swings; give the rotor's part of these, as felt at the joint"
+        )
 
 
 @lru_cache(maxsize=1024)

@@ -45,6 +45,8 @@ from .limits import remove_quantity as remove_quantity
 from .planning.as_timed import TimedAnswer as TimedAnswer
 from .planning.as_timed import evaluate_as_timed as evaluate_as_timed
 from .planning.correct import correct_in_full as correct_in_full
+from .planning.cycle import Cycle as Cycle
+from .planning.cycle import Shuttle as Shuttle
 from .planning.fastest import Fastest as Fastest
 from .planning.fastest import fastest_move as fastest_move
 from .planning.many import Moves as Moves

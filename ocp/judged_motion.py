@@ -32,6 +32,9 @@ from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.simulation.free_vibration import FreeVibration, fastest_along, vibration_of
 from quietarm.ocp.simulation.full_dynamics import FullFigures, follow_in_full, times_after
 from quietarm.ocp.simulation.mesh import Mesh
+from quietarm.ocp.simulation.on_drive import DriveFigures, DriveRun, figures_of, run_on_drive
+from quietarm.ocp.simulation.servo import Mode, Servo, as_held, held_mode, mode_on_servo
+from quietarm.ocp.simulation.set_points import FINEST, SetPoints, invert
 from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
@@ -252,6 +255,82 @@ class JudgedMotion:
             times_after(float(vibration.window), float(vibration.fastest)),
             self.task.energy,
         )
+
+    @cached_property
+    def on_drive(self) -> DriveFigures | None:
+        """Figures on the plant's drive, judged by its servo, transmission and dry friction.
+
+        None where no drive is stated whose loops are known, and of a free motion.
+        """
+        drive = self.task.plant.drive
+        if drive is None or not drive.has_loops or self.profile is None:
+            return None
+        servo = self._servo
+        run = self.run_on_drive()
+        inside = np.minimum(run.time, self.task.duration)
+        planned = np.array(self.nominal.sample(np.unique(inside)).motion.angle)
+        planned = np.append(planned, np.full(len(run.time) - len(planned), planned[-1]))
+        return figures_of(servo, run, planned, self.task.duration, self.task.target)
+
+    @property
+    def modes_on_drive(self) -> tuple[Mode, Mode]:
+        """The slowest mode with the joint held, and on its servo, without friction."""
+        servo = self._servo
+        target = self.task.target
+        return held_mode(servo.plant, target), mode_on_servo(servo.plant, target)
+
+    def run_on_drive(self) -> DriveRun:
+        """Run the plant on its drive along the set points, until the residual window is over."""
+        rate = round(1 / FINEST)
+        return run_on_drive(
+            self._servo,
+            self.set_points(rate),
+            self.task.residual_window,
+            fastest_along(self.task.plant, self.task.start, self.task.target),
+            self.task.initial_state,
+        )
+
+    @property
+    def inverts_drive(self) -> bool:
+        """Whether the set points are others than the planned path, so that the load follows it.
+
+        Not where the plant's frequencies were recorded on the moving servo: they then have it.
+        """
+        drive = self.task.plant.drive
+        return drive is not None and drive.has_loops and drive.recorded == "held"
+
+    def set_points(self, sample_rate: float) -> SetPoints:
+        """Return what the servo has to be given, rows at a rate [Hz].
+
+        They are the planned path, unless `inverts_drive`. Then the drive's linear model is inverted
+        so that the load follows the path: rows go on until the servo has settled.
+        """
+        task = self.task
+        drive = task.plant.drive
+        if drive is None or not self.inverts_drive:
+            ticks = math.ceil(task.duration * sample_rate - 1e-9)
+            times = np.arange(ticks + 1) / sample_rate
+            path = self.nominal.sample(times).motion
+            return SetPoints(times, path.angle, path.speed, path.acceleration)
+        every = max(1, math.ceil(1 / (sample_rate * FINEST) - 1e-9))
+        step = 1 / (sample_rate * every)
+        times = step * np.arange(math.floor(task.duration / step + 1e-9) + 1)
+        sampled = self.nominal.sample(np.minimum(times, task.duration))
+        path = sampled.motion
+        effort = sampled.torque - np.array(drive.friction(path.speed)).ravel()
+        servo = Servo(task.plant, task.start)
+        return invert(servo, Servo(task.plant, task.target), path, effort, step, every)
+
+    @property
+    def nominal(self) -> JudgedMotion:
+        """The same motion on the plant without errors."""
+        return replace(self, errors={}) if self.errors else self
+
+    @property
+    def _servo(self) -> Servo:
+        """The plant with the errors, its joint held, on its drive."""
+        held = as_held(self.task.plant, self.task.target)
+        return Servo(perturb_plant(held, self.errors), self.task.start)
 
     @property
     def trajectory(self) -> Trajectory:

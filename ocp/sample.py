@@ -101,7 +101,7 @@ def sample_plant(plant: Plant, path: JointMotion, W: Modes, dW: Modes, ddW: Mode
         dW=dW,
         ddW=ddW,
         tips=plant.tips_at(path, W),
-        torques=plant.torques(path, W, dW, ddW),
+        torques=plant.driving_torques(path, W, dW, ddW),
         plant=plant,
     )
 

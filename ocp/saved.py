@@ -213,14 +213,13 @@ def _known_here(kind: Any, entry: Any) -> Any:
 
 def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
     """The entries of a table, those that are no numbers as values of their classes."""
-    entries = [entry for entry in dataclasses.fields(kind) if "content" in entry.metadata]
-    classes = get_type_hints(kind) if entries else {}
-    content = {
-        entry.name: typed(table[entry.name], classes[entry.name])
-        for entry in entries
-        if entry.name in table
-    }
-    return {**table, **content}
+    names = [
+        entry.name
+        for entry in dataclasses.fields(kind)
+        if "content" in entry.metadata and entry.name in table
+    ]
+    classes = get_type_hints(kind) if names else {}
+    return {**table, **{name: typed(table[name], classes[name]) for name in names}}
 
 
 def _as_meant(document: Any, kind: type[Any]) -> Any:

@@ -639,6 +639,7 @@ def _stated(task: PointToPoint) -> dict[str, object]:
     plain = (entry.name for entry in fields(task) if entry.name not in apart)
     return {
         "plant parameter": task.plant.parameters,
+        "drive": {} if task.plant.drive is None else vars(task.plant.drive),
         **{name.replace("_", " "): getattr(task, name) for name in plain},
         **{_limit_words(name): bounds for name, bounds in task.bounds.items()},
         "initial state": task.initial_state,

@@ -43,7 +43,8 @@ class ScaledModes(Plant):
     damping: Expression = 1.0
 
     def __post_init__(self) -> None:  # a factor may be a symbol, so no check of numbers
-        for name in ("name", "modes", "joint", "tip_unit", "small_deflection", "path_range"):
+        of_plant = "name", "modes", "joint", "tip_unit", "small_deflection", "path_range", "drive"
+        for name in of_plant:
             object.__setattr__(self, name, getattr(self.plant, name))
 
     def modal_accelerations(self, joint: JointMotion, W: Modes, dW: Modes) -> Modes:

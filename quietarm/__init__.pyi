@@ -11,6 +11,7 @@ from .metaheuristics import SearchMethod as SearchMethod
 from .metaheuristics import search as search
 from .models import ArmOnFlexibleLink as ArmOnFlexibleLink
 from .models import Beam as Beam
+from .models import Drive as Drive
 from .models import DualLinkManipulator as DualLinkManipulator
 from .models import FlexibleBeam as FlexibleBeam
 from .models import GeometricPath as GeometricPath

@@ -115,8 +115,8 @@ def move_table(plan: Plan, columns: str, rate: float) -> dict[str, Array]:
     robot each axis of its tip's frame along which that moves, `tip_x_mm`; of a robust plan in each
     scenario, which its heading names.
     """
-    times = times_of(plan, rate)
-    motion = plan.sampled(times)
+    motion = plan.commanded(rate)
+    times = motion.time
     plant = plan.task.plant
     sample = motion.sample
     values: dict[str, list[Array]] = {

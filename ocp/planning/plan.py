@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
-from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, takes
+from quietarm.models import JointMotion
+from quietarm.ocp.checks import IF_STATED, CountFromOne, NotNegative, count_of, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.figures import ENERGY, figures_in
 from quietarm.ocp.files import write_whole
@@ -22,7 +23,8 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.move_table import USUAL_RATE, move_csv
+from quietarm.ocp.planning.cycle import Cycle, Shuttle
+from quietarm.ocp.planning.move_table import USUAL_RATE, move_csv, ticks_of_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import Record, Setting, Verification
@@ -33,6 +35,10 @@ from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS
 from quietarm.ocp.task import PointToPoint
+
+STATED_CYCLE = "stated_cycle"
+"""Entry of a file: the figures of a plan's cycles."""
+
 
 
 @dataclass(frozen=True)
@@ -62,6 +68,8 @@ class Plan(MotionAnswer):
         Decrease of the least energy per unit of a widened limit [J by the limit's unit]: sums of
         multipliers, by the limit's name. Of the residual also if rest on arrival was required;
         empty if nothing was optimised.
+    shuttle : Shuttle or None
+        The cycles that the plan is reported for, there and back; None where none were asked for.
     """
 
     example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
@@ -77,6 +85,7 @@ class Plan(MotionAnswer):
     steps: CountFromOne
     residual_limit: NotNegative | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
+    shuttle: Shuttle | None = field(default=None, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
@@ -189,6 +198,52 @@ class Plan(MotionAnswer):
     def sampled(self, times: ArrayLike) -> Trajectory:
         """The motion at given times by CVODES; see `JudgedMotion.sample`."""
         return self.candidate.sample(times)
+
+    @cached_property
+    def cycles(self) -> Cycle | None:
+        """What the cycles of its `shuttle` take and leave; None where it has none."""
+        return None if self.shuttle is None else Cycle(self.candidate, self.shuttle)
+
+    def _content(self) -> dict[str, Any]:
+        stated = {} if self.cycles is None else {STATED_CYCLE: self.cycles.stated}
+        return super()._content() | stated
+
+    @classmethod
+    def _entries_of(cls, content: Mapping[str, Any]) -> dict[str, Any]:
+        entries = super()._entries_of(content)
+        return {name: entry for name, entry in entries.items() if name != STATED_CYCLE}
+
+    def cycle(
+        self, dwell: float = 0.0, repeat: int = 1, errors: Mapping[str, float] | None = None
+    ) -> Cycle:
+        """Return what cycles of this move there and back take and leave.
+
+        Parameters
+        ----------
+        dwell : float
+            Time between arrival and the next start [s].
+        repeat : int
+            How many cycles.
+        errors : mapping of str to float, optional
+            Relative errors of the plant's parameters, for what is left.
+        """
+        return Cycle(self.candidate, Shuttle(dwell, repeat), dict(errors or {}))
+
+    def commanded(self, sample_rate: float = 1000.0) -> Trajectory:
+        """Return the motion that a controller is given, rows at a rate [Hz].
+
+        Its joints are the set points of the plant's drive, where it has one whose loops are known:
+        the load then follows the planned path, which `sample.path` has. All else is as planned. The
+        last row is the first tick at or after arrival, or at which the servo has settled.
+        """
+        ticks = ticks_of_move(self.task.duration, sample_rate)
+        if not self.candidate.inverts_drive:
+            return self.sampled(np.arange(ticks + 1) / sample_rate)
+        points = self.candidate.set_points(sample_rate)
+        planned = self.sampled(points.time)
+        (joint,) = planned.sample.joints
+        asked = JointMotion(points.place, points.speed, points.acceleration, joint.jerk)
+        return Trajectory(planned.time, planned.sample._replace(joints=[asked]))
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

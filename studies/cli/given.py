@@ -9,7 +9,7 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from quietarm.models import Plant
+from quietarm.models import Drive, Plant
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.planning.named_profiles import profile_of
 from quietarm.ocp.solvers.choice import SOLVERS
@@ -18,6 +18,7 @@ from quietarm.studies.cli.effort import announce_minutes, refuse_endless, second
 from quietarm.studies.cli.plants import Kind, build_plant, choose_kind, parameters_of
 from quietarm.studies.cli.quantities import (
     RESIDUAL_LIMIT,
+    parse_drive,
     parse_of_plant,
     parse_parameters,
     single_values,
@@ -90,6 +91,13 @@ class Given:
         except ValueError as error:
             hint = f"'--{name.replace('_', '-')}'"
             raise click.BadParameter(str(error), param_hint=hint) from None
+
+    def read_drive(self, plant: Plant) -> Drive | None:
+        """The drive that was typed, in the units of the plant's joint; None where none was."""
+        try:
+            return parse_drive(self.drive, plant.joint)
+        except ValueError as error:
+            raise click.BadParameter(str(error), param_hint="'--drive'") from None
 
     def read_place(self, plant: Plant) -> dict[str, float]:
         """Where a move is in the grid of a sweep: a value of each axis that was typed."""

@@ -160,6 +160,10 @@ def limit_option(quantity: Quantity) -> click.Option:
 LIMITS = tuple(map(limit_option, QUANTITIES.values()))
 SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
              help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.")  # fmt: skip
+DRIVE = option("--drive", "drive", multiple=True, metavar="NAME=VALUE,...",
+               help="Servo, transmission and friction of a plant of one joint, as far as you know "
+               "them: position_loop=60/s,speed_loop=40Hz,reset_time=30ms,compliance=6N/um,rotor="
+               "18kg,friction_motor=25N,friction_load=20N,dead_time=0.25ms.")  # fmt: skip
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
                help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
                "residual is then that of the worst case. `measured`: as identified.")  # fmt: skip
@@ -198,6 +202,7 @@ ENDS = (
 TASK = (
     click.Argument(["plant"], type=Parsed("plant", parse_plant), required=False, metavar="[PLANT]"),
     SET,
+    DRIVE,
     *ENDS,
     option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),

@@ -19,8 +19,11 @@ import numpy as np
 from quietarm.machine.tables.column_units import OF_OPTIONS, normal
 from quietarm.metaheuristics.evaluation.noise import noise_share
 from quietarm.metaheuristics.parallel import MOST_WORKERS
-from quietarm.models import Plant
+from quietarm.models import Drive, Plant
 from quietarm.models.dimensions import EFFORT, SPEED
+from quietarm.models.drive import NUMBERS as DRIVE_NUMBERS
+from quietarm.models.drive import WORDS as DRIVE_WORDS
+from quietarm.models.drive import unit_of as drive_unit
 from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY
 from quietarm.models.plant import DAMPING, OTHER
 from quietarm.models.units import is_number, parse_quantity
@@ -94,7 +97,8 @@ def parse_parameters(
     """Read the values that a plant's parameters are set to, several for an axis of a sweep."""
     units = plant.units()
     kinds = plant.parameter_kinds()
-    meanings = {entry.name: entry.metadata.get("meaning", "") for entry in fields(plant)}
+    entries = plant.parameter_fields()
+    meanings = {entry.name: entry.metadata.get("meaning", "") for entry in entries}
     values: dict[str, tuple[float, ...]] = {}
     for name, text in once(pairs, "--set ").items():
         if name not in units:
@@ -266,6 +270,38 @@ def parse_torque_speed(text: str, joint: str = ROTARY) -> tuple[tuple[float, flo
     Of a linear joint forces: ``100N@0,40N@500mm/s``.
     """
     return tuple(map(_of_drives.get(joint, _of_drives[ROTARY]), text.split(",")))
+
+
+def parse_drive(texts: Iterable[str], joint: str) -> Drive | None:
+    """Read what is known of a drive: ``speed_loop=40Hz,position_loop=60/s``; None of no text."""
+    parts = [part for text in texts for part in text.split(",")]
+    pairs = [parse_pair(part, "a drive's number", "speed_loop=40Hz") for part in parts]
+    values = dict[str, Any]()
+    for name, text in once(((name.replace("-", "_"), text) for name, text in pairs), "").items():
+        if name in DRIVE_WORDS:
+            values[name] = text
+        elif name in DRIVE_NUMBERS:
+            values[name] = _of_drive_number(name, text, joint)
+        else:
+            raise ValueError(has_no("a drive", "number", name, (*DRIVE_NUMBERS, *DRIVE_WORDS)))
+    return Drive(**values) if values else None
+
+
+def _of_drive_number(name: str, text: str, joint: str) -> float:
+    """Read a number of the drive in its unit; a compliance may be typed as a stiffness."""
+    if name == "compliance" and (stiffness := _STIFFNESS.fullmatch(text)):
+        factor = _STIFFNESSES[joint].get(stiffness[2])
+        if factor is not None and float(stiffness[1]) > 0:
+            return factor / float(stiffness[1])
+    return parse_quantity(text, drive_unit(name, joint), f"a {name.replace('_', ' ')}")
+
+
+_STIFFNESS = re.compile(r"([0-9.eE+-]+)\s*([kN].*)")
+_STIFFNESSES: Mapping[str, Mapping[str, float]] = {
+    LINEAR: {"N/m": 1.0, "kN/m": 1e-3, "N/mm": 1e-3, "N/um": 1e-6, "N/µm": 1e-6},
+    ROTARY: {"Nm/rad": 1.0, "kNm/rad": 1e-3},
+}
+"""Units of a stiffness, and its compliance in SI units if there is one of them."""
 
 
 def parse_workers(text: str) -> int:

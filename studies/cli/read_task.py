@@ -14,6 +14,7 @@ import click
 from quietarm.models import Plant, Robot, RobotOnPath
 from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
+from quietarm.ocp.simulation.servo import as_held
 from quietarm.ocp.task import OF_MOVES
 from quietarm.studies.cli.plants import (
     build_plant,
@@ -112,6 +113,8 @@ def _make_task(given: Given, kind: Kind, asked: Asked) -> PointToPoint:
         band=band,
         margin=given.band_margin,
     )
+    if task.plant.drive is not None and task.plant.drive.has_loops:
+        as_held(task.plant, task.target)  # refuses a frequency that is of no structure on the servo
     warn_of_payload(kind, plant, asked.values)
     if isinstance(kind, Robot) and not _shows_rows(given):
         warn_of_notes(plant)
@@ -131,6 +134,8 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
     given.refuse(PATH_NAMES, OF_ROBOT)
     parameters = parameters_of(kind, given.parameters)
     plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
+    if given.drive:
+        plant = replace(plant, drive=given.read_drive(plant))
     uncertainty = build_uncertainty(kind, given.errors, parameters)
     given.remarks += floor_words(kind, given.errors)
     values = dict(parameters)
@@ -141,6 +146,7 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
 
 def _of_robot(given: Given, robot: Robot, known: Mapping[str, float]) -> Asked:
     """A robot on the path that was typed; it may have multiples of its payload, and durations."""
+    given.refuse(["drive"], "is for a plant of one joint; a robot's file has its coulomb")
     durations = (known["duration"],) if "duration" in known else _needed(given, "duration", robot)
     multiples = parse_parameters(RobotOnPath, given.parameters)
     least = {name: min(values) for name, values in multiples.items()}

@@ -151,6 +151,7 @@ def _constraints(task: PointToPoint, limits: Sequence[Limit]) -> list[Any]:
                 _torques(task, gridpoints, task.span, 0.0)
                 + _torques(task, gridpoints, -task.span, 0.0)
             ) / 2 - held
+            held = held + _coulomb(task, gridpoints)  # it never moves backwards
             sides = np.concatenate([self.bounds[:, 1], -self.bounds[:, 0]])
             return pushed, swept, held, np.vstack([unit, -unit]), sides, None, None
 
@@ -173,6 +174,19 @@ def _bounds(limit: Limit, joints: int) -> Array:
     return bounds
 
 
+def _coulomb(task: PointToPoint, shares: Array) -> Array:
+    """Coulomb friction of all joints on the way, shape (shares, joints).
+
+    Half of the difference of both ways is viscous friction, linear in the speed, and this.
+    """
+
+    def of_both_ways(speed: float) -> Array:
+        ways = (_torques(task, shares, way, 0.0) for way in (speed, -speed))
+        return np.subtract(*ways) / 2
+
+    return 2 * of_both_ways(task.span) - of_both_ways(2 * task.span)
+
+
 def _torques(task: PointToPoint, shares: Array, speed: float, acceleration: float) -> Array:
     """Torques of all joints while nothing swings, shape (shares, joints)."""
     plant = task.plant
@@ -180,5 +194,6 @@ def _torques(task: PointToPoint, shares: Array, speed: float, acceleration: floa
     rows = list[list[float]]()
     for share in shares:
         motion = JointMotion(task.start + task.span * float(share), speed, acceleration)
-        rows.append([float(torque) for torque in plant.torques(motion, still, still, still)])
+        torques = plant.driving_torques(motion, still, still, still)
+        rows.append([float(torque) for torque in torques])
     return np.array(rows)

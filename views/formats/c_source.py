@@ -64,7 +64,14 @@ class CSource(ExportFormat):
         """Header and source."""
         (moves,) = values_of(answers)
         header, source = _c_files(moves, path.stem)
-        return Exported({path.with_suffix(".h"): header, path: source})
+        through_drive = isinstance(moves, Plan) and moves.candidate.inverts_drive
+        notes = [_OF_THE_LOAD] if through_drive else []
+        return Exported({path.with_suffix(".h"): header, path: source}, notes)
+
+
+_OF_THE_LOAD = (
+    "the C has the load's path, without the drive; set points through the drive: a .csv or .yaml"
+)
 
 
 def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:

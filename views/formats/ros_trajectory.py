@@ -28,7 +28,10 @@ class RosTrajectory(ExportFormat):
         self, plan: Plan, *args: Any, rate: float, thin: float | None = None, joint: str = "joint"
     ) -> str:
         """A single joint has the name that is given; those of a robot the plant's."""
-        motion = plan.sampled(times_of_points(plan, rate, thin))
+        if thin is None:
+            motion = plan.commanded(rate)
+        else:
+            motion = plan.sampled(times_of_points(plan, rate, thin))
         orders = [
             np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
             for order in range(3)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, Field, fields
+from dataclasses import MISSING, Field
 from typing import Any
 
 from quietarm.metaheuristics import PRESETS
@@ -46,7 +46,7 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         rows = [(objective_words([name]), _objective(name)) for name in names]
         return "objectives, for --objectives of search, front and bench", rows
     if name in plants:
-        rows = [(entry.name, _parameter(entry)) for entry in fields(plants[name])]
+        rows = [(entry.name, _parameter(entry)) for entry in plants[name].parameter_fields()]
         return f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows
     return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
 

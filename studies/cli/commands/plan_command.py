@@ -24,6 +24,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.off_model import off_model
 from quietarm.ocp.planning.correct import refuse_correction
+from quietarm.ocp.planning.cycle import Shuttle
 from quietarm.ocp.planning.default_jerk import DRIVE_RISES, with_default_jerk
 from quietarm.ocp.planning.named_profiles import chooses_terms, families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -52,7 +53,7 @@ from quietarm.studies.cli.outputs import (
     output_option,
 )
 from quietarm.studies.cli.robot_options import line_note
-from quietarm.studies.cli.types import INPUT
+from quietarm.studies.cli.types import INPUT, TIME
 from quietarm.views import pictures
 from quietarm.views.report.acting_words import band_lines
 from quietarm.views.report.off_words import off_words
@@ -79,6 +80,10 @@ _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
            "sweep, between its cells, without solving."),
     option("--in-full", is_flag=True, help="Correct the plan of a robot until hardly anything is "
            "left by its whole equations, every spring nonlinear."),
+    option("--return", "returns", is_flag=True, help="Report cycles there and back: effort, heat "
+           "and energy of a cycle, and what is left if a parameter is off."),
+    option("--dwell", type=TIME, help="Time after each move of a cycle. [default: 0]"),
+    option("--repeat", type=int, help="How many cycles. [default: 12]"),
     SENSITIVITIES, YES,
     output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"},
                   formats=["plan"]),
@@ -100,6 +105,7 @@ def plan(given: Given) -> None:
       quietarm plan --from moves.zarr --target 37deg --duration 930ms --output plan.json
     """  # noqa: D301  # \b is click's: do not rewrap
     _refuse_meaningless(given)
+    shuttle = _read_shuttle(given)
     if given.dataset is not None:
         from quietarm.studies.sweep.library import MoveLibrary, plan_from  # it needs xarray
 
@@ -137,6 +143,8 @@ def plan(given: Given) -> None:
             straightness = line_note(given, task.plant)
             if straightness is not None:
                 answer = replace(answer, notes=[straightness, *answer.notes])
+    if shuttle is not None and isinstance(answer.motion, Plan):
+        answer = replace(answer, motion=answer.motion.with_entries(shuttle=shuttle))
     finish_motion(_with_errors(answer), given.output, sensitivities=given.sensitivities)
 
 
@@ -152,6 +160,16 @@ def _with_errors(answer: FoundMotion) -> FoundMotion:
     return replace(answer, notes=[words, *answer.notes])
 
 
+def _read_shuttle(given: Given) -> Shuttle | None:
+    """The cycles that were asked for; None without --return, whose options are then refused."""
+    if not given.returns:
+        given.refuse(["dwell", "repeat"], "is for cycles of --return")
+        return None
+    usual = 12
+    repeat = usual if given.repeat is None else given.repeat
+    return Shuttle(given.dwell or 0.0, repeat)
+
+
 def _refuse_meaningless(given: Given) -> None:
     """Refuse options that have no meaning for what is asked."""
     of_coefficients = ("terms", "bound", "residual_limit")
@@ -164,7 +182,7 @@ def _refuse_meaningless(given: Given) -> None:
         why = f"is not for {given.profile}, only for profiles with coefficients"
         free = given.profile in FREE
         given.refuse(of_coefficients, why)
-        given.refuse(["sensitivities", "in_full"] if free else _OF_SOLVES, why)
+        given.refuse(["sensitivities", "in_full", "returns"] if free else _OF_SOLVES, why)
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
         endings = [ending_of(path) for path in given.output]

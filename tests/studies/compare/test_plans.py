@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from quietarm.models import FlexibleBeam, JointMotion, SingleLinkManipulator
+from quietarm.models import Drive, FlexibleBeam, JointMotion, LinearAxis, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients, plan_move
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -161,6 +161,18 @@ def test_toppra_keeps_a_torque_and_goes_backwards():
     torques = [plant.torques(motion, still, still, still)[0] for motion in pushed]
     assert np.abs(torques).max() <= 0.12 * (1 + 1e-6)
     assert free.boundaries(task.start)[0][-1] == pytest.approx(-0.2)
+
+
+def test_toppra_leaves_room_for_coulomb_friction():
+    """Half of the force goes into friction: the axis brakes three times as hard as it starts."""
+    pytest.importorskip("toppra")
+    axis = LinearAxis(mass=10, load=1e-3, friction=0, drive=Drive(friction_load=20))
+    way, force = 0.5, 40.0
+    speeds_up, brakes = (force - 20) / 10, (force + 20) / 10
+    least = math.sqrt(2 * way * (1 / speeds_up + 1 / brakes))  # a closed form
+    motion = toppra_motion(PointToPoint(axis, way, 1.001 * least, torque_limit=force))
+    assert motion.acceleration.max() == pytest.approx(speeds_up, rel=0.01)
+    assert motion.acceleration.min() == pytest.approx(-brakes, rel=0.01)
 
 
 def test_toppra_needs_a_limit_and_to_be_installed(monkeypatch):
