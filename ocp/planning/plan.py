@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
 from quietarm.models.dimensions import ACCELERATION, ANGLE, EFFORT, SPEED, TORQUE, WAY, Words
-from quietarm.ocp.checks import CountFromOne, NotNegative, count_of, positive, takes
+from quietarm.ocp.checks import IF_STATED, CountFromOne, NotNegative, count_of, positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.figures import ENERGY, figures_in
@@ -25,6 +25,7 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.planning.executed import History
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
@@ -66,6 +67,8 @@ class Plan(MotionAnswer):
         Decrease of the least energy per unit of a widened limit [J by the limit's unit]: sums of
         multipliers, by the limit's name. Of the residual also if rest on arrival was required;
         empty if nothing was optimised.
+    learned : History or None
+        The executed moves that it was learned from by `quietarm.learn`; None of any other plan.
     """
 
     example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
@@ -81,6 +84,7 @@ class Plan(MotionAnswer):
     steps: CountFromOne
     residual_limit: NotNegative | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
+    learned: History | None = field(default=None, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}

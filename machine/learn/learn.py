@@ -1,0 +1,415 @@
+"""`learn`: from a plan and recordings of its executed move to the next plan, which leaves less.
+
+First the model: frequency and damping, where recordings of the swing differ from it clearly. Then
+the arrival state: what the machine leaves of a move is compared with what the corrected model says
+of its set points, over all moves that the plan was learned from (`arrival_map`), and the next plan
+is told to arrive in the state that makes up for the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.machine.identify.combine import combine
+from quietarm.machine.identify.identified import Estimate, Identified, Part, is_frequency
+from quietarm.machine.learn.arrival_map import ArrivalMap, map_of
+from quietarm.machine.learn.find_start import find_start, tip_share
+from quietarm.machine.learn.learning import Learning
+from quietarm.machine.learn.next_plan import plan_again
+from quietarm.machine.learn.read_swing import AfterMove, check_length, modal_names, read_swing
+from quietarm.machine.learn.tip_modes import TipModes
+from quietarm.machine.recordings.mending import without_glitches
+from quietarm.machine.recordings.recording import Recording, checked_recordings
+from quietarm.models import Plant
+from quietarm.ocp.checks import positive, takes
+from quietarm.ocp.judged_motion import JudgedMotion
+from quietarm.ocp.planning.executed import Executed, History
+from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.record import versions
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+_LEAST_CHANGE = 5e-4
+"""Share of a frequency, below which a difference from the model is left to the arrival state."""
+_LEAST_CHANGE_OF_DAMPING = 0.2
+"""The same of a damping."""
+
+
+@takes(plan=Plan, solver=Solver)
+def learn(
+    plan: Plan,
+    recordings: Sequence[Recording],
+    *,
+    dearer: float = 0.02,
+    solver: Solver = Sqp(),
+) -> Learning:
+    """Learn from recordings of a plan's executed move, and plan the next one.
+
+    Each recording is one execution of the plan, from its start until two periods after arrival or
+    longer: of a tip or an accelerometer, or of the joint's angle and its torque. The start is found
+    in it. What earlier plans left stands in the plan, if `learn` made it.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan that was executed.
+    recordings : sequence of Recording
+        Of its execution, one or several.
+    dearer : float
+        Share by which the next plan may take more energy than this one.
+    solver : Solver
+        As for `plan_move`.
+
+    Returns
+    -------
+    Learning
+        What was left, what changes, and the next plan.
+
+    Raises
+    ------
+    ValueError
+        When a recording is too short, of another move or by another clock; when the plan has
+        nothing that could change.
+    SolverFailedError
+        When no motion within the limits makes up for what was left.
+    """
+    dearer = positive("dearer", dearer)
+    _check_plan(plan)
+    recordings, notes = without_glitches(checked_recordings(recordings))
+    read = [_read(plan, recording) for recording in recordings]
+    history = _history_with(plan, [one.after for one in read])
+    evidence = _Evidence(plan, history, [one.after for one in read])
+    share = _seen_share(evidence, recordings)
+    maps = evidence.maps(share)
+    step = evidence.step(maps)
+    told = evidence.told_next(maps, step)
+    again = plan.with_entries(learned=history)
+    if step:
+        task = replace(
+            plan.task, plant=evidence.plant, final=evidence.modes.state(told)
+        )
+        again = plan_again(plan, task, dearer, solver).with_entries(learned=history)
+    notes += [note for one in read for note in one.after.notes]
+    return Learning(
+        plan=again,
+        left=evidence.left,
+        by_frequency=evidence.by_frequency(maps),
+        repeatable=evidence.repeatable(maps),
+        scatter=evidence.scatter,
+        floor=evidence.floor,
+        next_at_most=evidence.at_most(maps, told),
+        changed=evidence.changed,
+        estimates=evidence.estimates,
+        start={recording.name: one.start for recording, one in zip(recordings, read)},
+        step=step,
+        machine=evidence.machine(),
+        notes=(*notes, *evidence.doubts),
+    )
+
+
+@dataclass(frozen=True)
+class _Read:
+    """When a move began in a recording [s], and what swung after it."""
+
+    start: float
+    after: AfterMove
+
+
+def _check_plan(plan: Plan) -> None:
+    """ValueError where nothing of a plan could be learned."""
+    plant = plan.task.plant
+    if plan.profile.size == 0:
+        raise ValueError(
+            f"the plan's profile, {plan.profile.label}, has one motion alone, and nothing to "
+            "change; learn from a plan of quietarm plan"
+        )
+    if plant.has_path:
+        raise ValueError(
+            f"{plant.name} moves along a path, and learn takes plants of one joint; correct its "
+            "plan by the whole equations, plan --in-full"
+        )
+    if not any(is_frequency(plant, name) for name in plant.measured):
+        raise ValueError(
+            f"{plant.name} has no parameter that is the frequency of a mode, which recordings "
+            "tell; declare it by qa.parameter(..., kind='frequency')"
+        )
+
+
+def _read(plan: Plan, recording: Recording) -> _Read:
+    """The start and the swing of one recording."""
+    task = plan.task
+    start = find_start(plan, recording)
+    arrival = start.time + task.duration
+    check_length(recording, arrival, task.plant, task.target)
+    return _Read(start.time, read_swing(recording, arrival, task.plant, task.target))
+
+
+def _history_with(plan: Plan, read: Sequence[AfterMove]) -> History:
+    """The history of a plan with what was measured of it now."""
+    history = plan.learned or History(wanted=plan.task.final)
+    measured = tuple(one.measured for one in read)
+    now = Executed(plan.profile, plan.coefficients, plan.task.move, measured)
+    *before, last = [*history.moves, None] if not history.moves else history.moves
+    if last is not None and _same_motion(last, now):
+        now = replace(now, measured=(*last.measured, *measured))
+        return replace(history, moves=(*before, now))
+    return replace(history, moves=(*history.moves, now))
+
+
+def _same_motion(first: Executed, second: Executed) -> bool:
+    return (first.profile, first.coefficients, first.move) == (
+        second.profile, second.coefficients, second.move,
+    )  # fmt: skip
+
+
+class _Evidence:
+    """What all moves together tell of a machine.
+
+    Parameters
+    ----------
+    plan : Plan
+        That was executed last.
+    history : History
+        All moves, the last one with it.
+    read : sequence of AfterMove
+        What was read of the last one.
+    """
+
+    def __init__(self, plan: Plan, history: History, read: Sequence[AfterMove]) -> None:
+        self._plan = plan
+        self._history = history
+        self._read = read
+        self.modes = TipModes(self.plant, plan.task.target)
+
+    # The model
+
+    @cached_property
+    def _parts(self) -> list[Part]:
+        """What each recording of the history tells of the plant's parameters."""
+        read = {part.recording: part for one in self._read if (part := one.part)}
+        parts = list[Part]()
+        for number, move in enumerate(self._history.moves, start=1):
+            is_last = number == len(self._history.moves)
+            for one in move.measured:
+                if not one.values:
+                    continue
+                known = read.get(one.recording) if is_last else None
+                name = f"move {number}, {one.recording}"
+                values, deviations = dict(one.values), dict(one.deviations)
+                part = known or Part(one.recording, 0.0, 0.0, values, deviations)
+                parts.append(replace(part, recording=name))
+        return parts
+
+    @cached_property
+    def estimates(self) -> tuple[Estimate, ...]:
+        """Frequencies and dampings by all recordings."""
+        if not self._parts:
+            return ()
+        return tuple(combine(modal_names(self._plan.task.plant), self._parts).estimates)
+
+    @cached_property
+    def changed(self) -> dict[str, tuple[float, float]]:
+        """Parameters that the recordings clearly have otherwise: the model's and their values."""
+        plant = self._plan.task.plant
+        changed = dict[str, tuple[float, float]]()
+        for estimate in self.estimates:
+            model = getattr(plant, estimate.parameter)
+            rate = is_frequency(plant, estimate.parameter)
+            least = abs(model) * (_LEAST_CHANGE if rate else _LEAST_CHANGE_OF_DAMPING)
+            outside = not estimate.low <= model <= estimate.high
+            if outside and abs(estimate.value - model) > least:
+                changed[estimate.parameter] = (model, estimate.value)
+        if not any(is_frequency(plant, name) for name in changed):
+            return {}  # a damping alone is left to the arrival state
+        return changed
+
+    @cached_property
+    def plant(self) -> Plant:
+        """The plant with what is changed."""
+        return replace(
+            self._plan.task.plant, **{name: new for name, (_, new) in self.changed.items()}
+        )
+
+    def machine(self) -> Identified:
+        """The plant with all that recordings tell of it."""
+        values = {estimate.parameter: estimate.value for estimate in self.estimates}
+        names = modal_names(self._plan.task.plant)
+        told = values.keys()
+        return Identified(
+            plant=replace(self._plan.task.plant, **values),
+            estimates=self.estimates,
+            not_identifiable={
+                name: "the swings after the moves are too small" for name in names if name not in told
+            },
+            parts=tuple(self._parts),
+            left_out={},
+            warnings=(),
+            versions=versions(),
+        )
+
+    # The arrival
+
+    def _motion(self, move: Executed, plant: Plant) -> JudgedMotion:
+        """An executed move on a plant."""
+        start, target, duration = move.move
+        task = replace(
+            self._plan.task.certain,
+            plant=plant, start=start, target=target, duration=duration, final=None,
+        )  # fmt: skip
+        return JudgedMotion.of_profile(task, move.profile, move.coefficients)
+
+    @cached_property
+    def last_motion(self) -> JudgedMotion:
+        """The move that was executed last, on the plant with what is changed."""
+        return self._motion(self._history.moves[-1], self.plant)
+
+    @cached_property
+    def _told(self) -> ComplexArray:
+        """What the plant says of the set points of each move (moves, modes)."""
+        motions = [self._motion(move, self.plant) for move in self._history.moves[:-1]]
+        states = [motion.arrival[0] for motion in (*motions, self.last_motion)]
+        return np.stack([self.modes.amplitudes(state) for state in states])
+
+    @cached_property
+    def _swings(self) -> list[ComplexArray]:
+        """What was measured of each move (recordings, modes)."""
+        return [
+            np.array([[s.complex_amplitude for s in one.swings] for one in move.measured])
+            for move in self._history.moves
+        ]
+
+    @cached_property
+    def _left(self) -> ComplexArray:
+        """The mean of what each move left (moves, modes)."""
+        return np.stack([swings.mean(axis=0) for swings in self._swings])
+
+    @cached_property
+    def _wanted(self) -> ComplexArray:
+        """The swing at arrival that was asked for, of each mode."""
+        wanted = self._history.wanted
+        if wanted is None:
+            return np.zeros(len(self.modes.values), complex)
+        return self.modes.amplitudes([*wanted.W, *wanted.dW])
+
+    @cached_property
+    def _of_one(self) -> Array:
+        """Standard deviation of what one recording of each move shows, of each mode: its noise."""
+        noise = [[[s.deviation for s in one.swings] for one in m.measured] for m in self._history.moves]
+        return np.stack([np.sqrt((np.array(each) ** 2).mean(axis=0)) for each in noise])
+
+    @cached_property
+    def _scatter(self) -> Array | None:
+        """The same from recording to recording of one move, by mode; None where each has one."""
+        repeated = [swings for swings in self._swings if len(swings) > 1]
+        if not repeated:
+            return None
+        squares = sum((np.abs(s - s.mean(axis=0)) ** 2).sum(axis=0) for s in repeated)
+        freedom = 2 * sum(len(s) - 1 for s in repeated)
+        return np.sqrt(squares / freedom)
+
+    @cached_property
+    def _noise(self) -> Array:
+        """Standard deviation of each move's mean, by mode (moves, modes)."""
+        counts = np.array([len(swings) for swings in self._swings])[:, None]
+        single = self._of_one if self._scatter is None else np.hypot(self._of_one, self._scatter)
+        return single / np.sqrt(counts)
+
+    @cached_property
+    def _size(self) -> float:
+        """The tip's largest displacement from the joint during the last move [m]."""
+        times = np.linspace(0, self._plan.task.duration, 200)
+        return float(np.abs(self.last_motion.sample(times).tips).max())
+
+    def maps(self, share: float | None) -> list[ArrivalMap]:
+        """How each mode swings at arrival by what the plant says of set points."""
+        return [
+            map_of(self._told[:, k], self._left[:, k], self._noise[:, k], self._size, share)
+            for k in range(len(self.modes.values))
+        ]
+
+    def _again(self, maps: Sequence[ArrivalMap]) -> ComplexArray:
+        """What the last move would leave if it were executed again, beside what was wanted."""
+        return np.array([m.swing(t) for m, t in zip(maps, self._told[-1])]) - self._wanted
+
+    def step(self, maps: Sequence[ArrivalMap]) -> float:
+        """Share of the correction that is worth making: 0 where what is left may be noise."""
+        left = np.abs(self._again(maps))
+        unsure = np.array([m.deviation_of(t) for m, t in zip(maps, self._told[-1])])
+        if not self.changed and left.sum() <= self.floor:
+            return 0.0
+        power = float((left**2).sum())
+        return power / (power + 2 * float((unsure**2).sum()))
+
+    def told_next(self, maps: Sequence[ArrivalMap], step: float) -> ComplexArray:
+        """What the plant is to say of the next set points, by mode."""
+        aim = self._wanted + (1 - step) * self._again(maps)
+        return np.array([m.told_for(swing) for m, swing in zip(maps, aim)])
+
+    def at_most(self, maps: Sequence[ArrivalMap], told: ComplexArray) -> float:
+        """What the next move leaves at most, in 95 of 100 cases."""
+        many = 2.0  # deviations
+        aimed = np.abs([m.swing(t) - w for m, t, w in zip(maps, told, self._wanted)])
+        unsure = np.array([m.deviation_of(t) for m, t in zip(maps, told)])
+        return float((aimed + many * unsure).sum()) + self.floor
+
+    @property
+    def left(self) -> float:
+        """What swung at arrival of the last move, of all modes: the mean of its recordings."""
+        return float(np.abs(self._swings[-1]).sum(axis=1).mean())
+
+    def _frequency_share(self, maps: Sequence[ArrivalMap]) -> ComplexArray:
+        """What of that follows from the parameters that are changed, by mode."""
+        if not self.changed:
+            return np.zeros(len(maps), complex)
+        before = self._motion(self._history.moves[-1], self._plan.task.plant)
+        modes = TipModes(self._plan.task.plant, self._plan.task.target)
+        told_before = modes.amplitudes(before.arrival[0])
+        return np.array([m.share for m in maps]) * (self._told[-1] - told_before)
+
+    def by_frequency(self, maps: Sequence[ArrivalMap]) -> float:
+        """Size of the same."""
+        return float(np.abs(self._frequency_share(maps)).sum())
+
+    def repeatable(self, maps: Sequence[ArrivalMap]) -> float:
+        """What the machine leaves beside that, and beside what was wanted."""
+        rest = self._left[-1] - self._frequency_share(maps) - self._wanted
+        return float(np.abs(rest).sum())
+
+    @property
+    def scatter(self) -> float | None:
+        """Standard deviation of what is left from recording to recording, of all modes."""
+        return None if self._scatter is None else float(np.sqrt(2) * self._scatter.sum())
+
+    @property
+    def floor(self) -> float:
+        """What no plan takes away: twice the deviation of one move."""
+        single = self._of_one[-1]
+        if self._scatter is not None:
+            single = np.hypot(single, self._scatter)
+        return 2 * float(single.sum())
+
+    @property
+    def doubts(self) -> list[str]:
+        """Whether moves repeat."""
+        most = 0.5  # share of what is left, by which moves may differ
+        if self.scatter is None or self.scatter <= most * self.left:
+            return []
+        sizes = [f"{1e3 * float(s):.3g}" for s in np.abs(self._swings[-1]).sum(axis=1)]
+        return [
+            f"warning: the moves do not repeat: they leave {', '.join(sizes)} mm; record more of "
+            "them, or make a robust plan, by --error"
+        ]
+
+
+def _seen_share(evidence: _Evidence, recordings: Sequence[Recording]) -> float | None:
+    """How much of the plant's swing the tip shows during the move; None where it is not seen."""
+    shares = [tip_share(evidence.last_motion, one) for one in recordings]
+    seen = [share for share in shares if share is not None]
+    return float(np.median(seen)) if seen else None
