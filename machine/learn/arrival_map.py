@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 _OF_UNKNOWN_SHARE = 0.3
 """Standard deviation of a share of about 1, where no tip is seen during the move."""
-_OF_SEEN_SHARE = 0.05
+_OF_SEEN_SHARE = 0.1
 """The same of one that is seen: the servo's delay turns it."""
 _OF_DEVIATION = 0.1
 """The same of the deviation, as a share of the tip's largest displacement during the move."""

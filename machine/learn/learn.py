@@ -21,6 +21,7 @@ from quietarm.machine.learn.arrival_map import ArrivalMap, map_of
 from quietarm.machine.learn.find_start import find_start, tip_share
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
+from quietarm.machine.learn.read_force import read_torque, swing_by_joint
 from quietarm.machine.learn.read_swing import AfterMove, check_length, modal_names, read_swing
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches
@@ -33,6 +34,7 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.record import versions
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -84,9 +86,12 @@ def learn(
     _check_plan(plan)
     recordings, notes = without_glitches(checked_recordings(recordings))
     read = [_read(plan, recording) for recording in recordings]
-    history = _history_with(plan, [one.after for one in read])
-    evidence = _Evidence(plan, history, [one.after for one in read])
-    share = _seen_share(evidence, recordings)
+    evidence = _evidence_of(plan, read)
+    if any(one.by_joint for one in read):  # once more, by the frequency that all moves tell
+        read = [one.on(evidence.plant, plan.task.target) for one in read]
+        evidence = _evidence_of(plan, read)
+    history = evidence.history
+    share = _seen_share(evidence, read)
     maps = evidence.maps(share)
     step = evidence.step(maps)
     told = evidence.told_next(maps, step)
@@ -107,7 +112,7 @@ def learn(
         next_at_most=evidence.at_most(maps, told),
         changed=evidence.changed,
         estimates=evidence.estimates,
-        start={recording.name: one.start for recording, one in zip(recordings, read)},
+        start={one.recording.name: one.start for one in read},
         step=step,
         machine=evidence.machine(),
         notes=(*notes, *evidence.doubts),
@@ -116,10 +121,38 @@ def learn(
 
 @dataclass(frozen=True)
 class _Read:
-    """When a move began in a recording [s], and what swung after it."""
+    """When a move began in a recording [s], when it ended, and what swung after it.
 
+    Without a tip that follows from the joint's motion.
+    """
+
+    recording: Recording
     start: float
+    arrival: float
     after: AfterMove
+
+    @property
+    def by_joint(self) -> bool:
+        """Whether no tip was recorded."""
+        return _is_by_joint(self.recording)
+
+    def on(self, plant: Plant, place: float) -> _Read:
+        """The same by another plant's frequencies."""
+        if not self.by_joint:
+            return self
+        part = self.after.part or Part(self.recording.name, self.start, self.arrival)
+        after = swing_by_joint(self.recording, part, self.arrival, plant, place)
+        return replace(self, after=replace(after, notes=self.after.notes))
+
+
+def _is_by_joint(recording: Recording) -> bool:
+    return recording.tip is None and recording.acceleration is None
+
+
+def _evidence_of(plan: Plan, read: Sequence[_Read]) -> _Evidence:
+    """What the moves of a plan's history and recordings of the last one tell."""
+    after = [one.after for one in read]
+    return _Evidence(plan, _history_with(plan, after), after)
 
 
 def _check_plan(plan: Plan) -> None:
@@ -145,10 +178,21 @@ def _check_plan(plan: Plan) -> None:
 def _read(plan: Plan, recording: Recording) -> _Read:
     """The start and the swing of one recording."""
     task = plan.task
-    start = find_start(plan, recording)
-    arrival = start.time + task.duration
+    start = find_start(plan, recording).time
+    arrival = start + task.duration
     check_length(recording, arrival, task.plant, task.target)
-    return _Read(start.time, read_swing(recording, arrival, task.plant, task.target))
+    if not _is_by_joint(recording):
+        after = read_swing(recording, arrival, task.plant, task.target)
+        return _Read(recording, start, arrival, after)
+    if recording.angle is None:
+        raise ValueError(
+            f"{recording.name}: a torque alone does not tell how the tip swings; name the column "
+            "of the joint by --angle, or that of a tip by --tip"
+        )
+    part = read_torque(recording, start, arrival, task.plant)
+    plant = with_values(task.plant, part.values)
+    after = swing_by_joint(recording, part, arrival, plant, task.target)
+    return _Read(recording, start, arrival, after)
 
 
 def _history_with(plan: Plan, read: Sequence[AfterMove]) -> History:
@@ -184,7 +228,7 @@ class _Evidence:
 
     def __init__(self, plan: Plan, history: History, read: Sequence[AfterMove]) -> None:
         self._plan = plan
-        self._history = history
+        self.history = history
         self._read = read
         self.modes = TipModes(self.plant, plan.task.target)
 
@@ -195,8 +239,8 @@ class _Evidence:
         """What each recording of the history tells of the plant's parameters."""
         read = {part.recording: part for one in self._read if (part := one.part)}
         parts = list[Part]()
-        for number, move in enumerate(self._history.moves, start=1):
-            is_last = number == len(self._history.moves)
+        for number, move in enumerate(self.history.moves, start=1):
+            is_last = number == len(self.history.moves)
             for one in move.measured:
                 if not one.values:
                     continue
@@ -268,12 +312,12 @@ class _Evidence:
     @cached_property
     def last_motion(self) -> JudgedMotion:
         """The move that was executed last, on the plant with what is changed."""
-        return self._motion(self._history.moves[-1], self.plant)
+        return self._motion(self.history.moves[-1], self.plant)
 
     @cached_property
     def _told(self) -> ComplexArray:
         """What the plant says of the set points of each move (moves, modes)."""
-        motions = [self._motion(move, self.plant) for move in self._history.moves[:-1]]
+        motions = [self._motion(move, self.plant) for move in self.history.moves[:-1]]
         states = [motion.arrival[0] for motion in (*motions, self.last_motion)]
         return np.stack([self.modes.amplitudes(state) for state in states])
 
@@ -282,7 +326,7 @@ class _Evidence:
         """What was measured of each move (recordings, modes)."""
         return [
             np.array([[s.complex_amplitude for s in one.swings] for one in move.measured])
-            for move in self._history.moves
+            for move in self.history.moves
         ]
 
     @cached_property
@@ -293,7 +337,7 @@ class _Evidence:
     @cached_property
     def _wanted(self) -> ComplexArray:
         """The swing at arrival that was asked for, of each mode."""
-        wanted = self._history.wanted
+        wanted = self.history.wanted
         if wanted is None:
             return np.zeros(len(self.modes.values), complex)
         return self.modes.amplitudes([*wanted.W, *wanted.dW])
@@ -301,7 +345,7 @@ class _Evidence:
     @cached_property
     def _of_one(self) -> Array:
         """Standard deviation of what one recording of each move shows, of each mode: its noise."""
-        noise = [[[s.deviation for s in one.swings] for one in m.measured] for m in self._history.moves]
+        noise = [[[s.deviation for s in one.swings] for one in m.measured] for m in self.history.moves]
         return np.stack([np.sqrt((np.array(each) ** 2).mean(axis=0)) for each in noise])
 
     @cached_property
@@ -368,7 +412,7 @@ class _Evidence:
         """What of that follows from the parameters that are changed, by mode."""
         if not self.changed:
             return np.zeros(len(maps), complex)
-        before = self._motion(self._history.moves[-1], self._plan.task.plant)
+        before = self._motion(self.history.moves[-1], self._plan.task.plant)
         modes = TipModes(self._plan.task.plant, self._plan.task.target)
         told_before = modes.amplitudes(before.arrival[0])
         return np.array([m.share for m in maps]) * (self._told[-1] - told_before)
@@ -408,8 +452,13 @@ class _Evidence:
         ]
 
 
-def _seen_share(evidence: _Evidence, recordings: Sequence[Recording]) -> float | None:
-    """How much of the plant's swing the tip shows during the move; None where it is not seen."""
-    shares = [tip_share(evidence.last_motion, one) for one in recordings]
+def _seen_share(evidence: _Evidence, read: Sequence[_Read]) -> float | None:
+    """How much of the plant's swing the tip shows during the move; None where it is not seen.
+
+    1 where the swing is what the plant makes of the joint's motion.
+    """
+    if all(one.by_joint for one in read):
+        return 1.0
+    shares = [tip_share(evidence.last_motion, one.recording) for one in read]
     seen = [share for share in shares if share is not None]
     return float(np.median(seen)) if seen else None

@@ -153,19 +153,21 @@ def _is_swing(part: Part) -> bool:
 def _fitted(fitter: PartFitter, rows: slice) -> tuple[Part, Array]:
     """All of some rows as one ring-down, from the frequency near the plant's that meets it best."""
     rough = fitter.model(fitter.part(rows), samples=FEW_SAMPLES)
-    seconds = float(np.ptp(rough.time))
-    low, high = (1 - _FAR) * fitter.frequency, (1 + _FAR) * fitter.frequency
-    count = int(np.clip(4 * (high - low) * seconds, 30, 400))
-    frequencies = np.linspace(low, high, count)
-    share = frequencies / fitter.frequency
-    starts = [np.where(fitter.are_rates, s * fitter.of_plant, fitter.of_plant) for s in share]
-    best_start = min(starts, key=rough.cost)
+    best_start = min(starts_near(fitter, rough), key=rough.cost)
     fitter.frequency = fitter.frequency_of(best_start)
     part, best = fit_ring_down(fitter, rows, rows.start, by_hand=True)
     if has_changes(fitter, part, best):
         spread = with_changes(fitter, part, best, rows)
         part = replace(part, spread=spread.spread, warning=spread.warning, cause=spread.cause)
     return part, part.vector
+
+
+def starts_near(fitter: PartFitter, model: SwingModel) -> list[Array]:
+    """The plant's parameters with other frequencies, of which a fit begins from the best."""
+    seconds = float(np.ptp(model.time))
+    count = int(np.clip(8 * _FAR * fitter.frequency * seconds, 30, 400))
+    factors = np.linspace(1 - _FAR, 1 + _FAR, count)
+    return [np.where(fitter.are_rates, f * fitter.of_plant, fitter.of_plant) for f in factors]
 
 
 def _refuse_clipped(fitter: PartFitter, part: Part) -> None:

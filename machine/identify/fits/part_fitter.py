@@ -101,7 +101,7 @@ class PartFitter:
         piece = self.thinned(whole, samples) if thin and not part.saturated else whole
         columns: BasisColumns = FreeDecay(self.response, piece)
         if part.hub:
-            columns = self._with_joint(part, whole, piece)
+            columns = self.columns_with_joint(part, whole, piece)
         cosines = 0
         if part.drifts:
             cosines = int(0.5 * self.frequency * np.ptp(piece.time))  # to a quarter of the swing's
@@ -112,7 +112,7 @@ class PartFitter:
                 model.counts = ~saturated(piece.values, model.fitted(part.vector))
         return model
 
-    def _with_joint(self, part: Part, whole: Recording, piece: Recording) -> BasisColumns:
+    def columns_with_joint(self, part: Part, whole: Recording, piece: Recording) -> BasisColumns:
         """The columns of a piece whose joint moves as all samples of the part say."""
         ends = (part.begin, part.end)
         if ends not in self._splines:
