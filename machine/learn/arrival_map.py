@@ -23,6 +23,9 @@ _OF_SEEN_SHARE = 0.1
 """The same of one that is seen: the servo's delay turns it."""
 _OF_DEVIATION = 0.1
 """The same of the deviation, as a share of the tip's largest displacement during the move."""
+_OF_MOVING = 0.003
+"""Share by which a frequency may be another while the joint moves than after arrival: a standing
+joint sticks."""
 _OF_LARGE_SWINGS = 0.04
 """Share of a swing by which it may differ from what a linear machine would leave."""
 
@@ -73,16 +76,41 @@ def map_of(
     share : float, optional
         How much of the plant's swing the tip shows during the move, where that is seen.
     """
+    guess, covariance = _fitted(np.stack([told, np.ones_like(told)], axis=1), left, noise, size, share)
+    return ArrivalMap(complex(guess[0]), complex(guess[1]), covariance)
+
+
+def faster_by(
+    told: ComplexArray,
+    slope: ComplexArray,
+    left: ComplexArray,
+    noise: Array,
+    size: float,
+    share: float | None = None,
+) -> float:
+    """By what share a mode is faster during moves than after them, as their arrivals tell.
+
+    Arguments are those of `map_of`, and `slope`, what the plant says more by a share of 1.
+    """
+    columns = np.stack([told, np.ones_like(told), _OF_MOVING * slope], axis=1)
+    (of_told, _, of_slope), _ = _fitted(columns, left, noise, size, share)
+    most = 3.0  # deviations
+    return _OF_MOVING * float(np.clip((of_slope / of_told).real, -most, most))
+
+
+def _fitted(
+    columns: ComplexArray, left: ComplexArray, noise: Array, size: float, share: float | None
+) -> tuple[ComplexArray, ComplexArray]:
+    """The sizes of columns: of what the plant says, of one, and of another; their covariance."""
     of_share = _OF_UNKNOWN_SHARE if share is None else _OF_SEEN_SHARE
     weights = 1 / (noise**2 + (_OF_LARGE_SWINGS * np.abs(left)) ** 2 + (1e-9 * size) ** 2)
-    columns = np.stack([told, np.ones_like(told)], axis=1)
-    prior = np.diag([1 / of_share**2, 1 / (_OF_DEVIATION * size) ** 2])
-    before = np.array([1.0 if share is None else share, 0.0])
+    deviations = np.array([of_share, _OF_DEVIATION * size, 1.0])[: columns.shape[1]]
+    before = np.array([1.0 if share is None else share, 0.0, 0.0])[: columns.shape[1]]
+    prior = np.diag(deviations**-2.0)
     curvature = (columns.conj().T * weights) @ columns + prior
     gradient = (columns.conj().T * weights) @ left + prior @ before
     # sizes apart: a share is about one, a deviation some millionths
     scale = np.sqrt(np.diag(curvature).real)
     scaled: Any = np.linalg.inv(curvature / np.outer(scale, scale))
     covariance = scaled / np.outer(scale, scale)
-    fitted_share, deviation = covariance @ gradient
-    return ArrivalMap(complex(fitted_share), complex(deviation), covariance)
+    return covariance @ gradient, covariance

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.combine import combine
 from quietarm.machine.identify.identified import Estimate, Identified, Part, is_frequency
-from quietarm.machine.learn.arrival_map import ArrivalMap, map_of
+from quietarm.machine.learn.arrival_map import ArrivalMap, faster_by, map_of
 from quietarm.machine.learn.find_start import find_start, tip_share
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
@@ -91,10 +91,8 @@ def learn(
         read = [one.on(evidence.plant, plan.task.target) for one in read]
         evidence = _evidence_of(plan, read)
     history = evidence.history
-    share = _seen_share(evidence, read)
-    maps = evidence.maps(share)
-    step = evidence.step(maps)
-    told = evidence.told_next(maps, step)
+    step = evidence.step
+    told = evidence.told_next(step)
     again = plan.with_entries(learned=history)
     if step:
         task = replace(
@@ -105,11 +103,11 @@ def learn(
     return Learning(
         plan=again,
         left=evidence.left,
-        by_frequency=evidence.by_frequency(maps),
-        repeatable=evidence.repeatable(maps),
+        by_frequency=evidence.by_frequency,
+        repeatable=evidence.repeatable,
         scatter=evidence.scatter,
         floor=evidence.floor,
-        next_at_most=evidence.at_most(maps, told),
+        next_at_most=evidence.at_most(told),
         changed=evidence.changed,
         estimates=evidence.estimates,
         start={one.recording.name: one.start for one in read},
@@ -152,7 +150,7 @@ def _is_by_joint(recording: Recording) -> bool:
 def _evidence_of(plan: Plan, read: Sequence[_Read]) -> _Evidence:
     """What the moves of a plan's history and recordings of the last one tell."""
     after = [one.after for one in read]
-    return _Evidence(plan, _history_with(plan, after), after)
+    return _Evidence(plan, _history_with(plan, after), read)
 
 
 def _check_plan(plan: Plan) -> None:
@@ -197,7 +195,9 @@ def _read(plan: Plan, recording: Recording) -> _Read:
 
 def _history_with(plan: Plan, read: Sequence[AfterMove]) -> History:
     """The history of a plan with what was measured of it now."""
-    history = plan.learned or History(wanted=plan.task.final)
+    plant = plan.task.plant
+    model = {name: getattr(plant, name) for name in modal_names(plant)}
+    history = plan.learned or History(wanted=plan.task.final, model=model)
     measured = tuple(one.measured for one in read)
     now = Executed(plan.profile, plan.coefficients, plan.task.move, measured)
     *before, last = [*history.moves, None] if not history.moves else history.moves
@@ -222,11 +222,11 @@ class _Evidence:
         That was executed last.
     history : History
         All moves, the last one with it.
-    read : sequence of AfterMove
+    read : sequence of _Read
         What was read of the last one.
     """
 
-    def __init__(self, plan: Plan, history: History, read: Sequence[AfterMove]) -> None:
+    def __init__(self, plan: Plan, history: History, read: Sequence[_Read]) -> None:
         self._plan = plan
         self.history = history
         self._read = read
@@ -237,7 +237,7 @@ class _Evidence:
     @cached_property
     def _parts(self) -> list[Part]:
         """What each recording of the history tells of the plant's parameters."""
-        read = {part.recording: part for one in self._read if (part := one.part)}
+        read = {part.recording: part for one in self._read if (part := one.after.part)}
         parts = list[Part]()
         for number, move in enumerate(self.history.moves, start=1):
             is_last = number == len(self.history.moves)
@@ -254,32 +254,65 @@ class _Evidence:
     @cached_property
     def estimates(self) -> tuple[Estimate, ...]:
         """Frequencies and dampings by all recordings."""
-        if not self._parts:
-            return ()
-        return tuple(combine(modal_names(self._plan.task.plant), self._parts).estimates)
+        estimates = list[Estimate]()
+        for name in modal_names(self._plan.task.plant):
+            telling = [part for part in self._parts if name in part.values]
+            estimates += combine([name], telling).estimates if telling else []
+        return tuple(estimates)
 
     @cached_property
     def changed(self) -> dict[str, tuple[float, float]]:
-        """Parameters that the recordings clearly have otherwise: the model's and their values."""
+        """Parameters that are changed: the model's value, and the new one.
+
+        A frequency is that during the moves, by what the swings at arrival tell beside it.
+        """
+        if not self._changed_by_swings:
+            return {}
+        plant = self._plan.task.plant
+        swings = {name: value for name, (_, value) in self._changed_by_swings.items()}
+        rates = [name for name in plant.measured if is_frequency(plant, name)]
+        after = replace(plant, **swings)
+        factor = 1 + self._faster_by(after, rates)
+        moving = swings | {name: factor * getattr(after, name) for name in rates}
+        return {name: (getattr(plant, name), value) for name, value in moving.items()}
+
+    def _faster_by(self, plant: Plant, rates: Sequence[str]) -> float:
+        """By what share the slowest mode is faster during the moves than after them."""
+        step = 1e-3
+        faster = replace(plant, **{name: (1 + step) * getattr(plant, name) for name in rates})
+        told = self._told_by(plant)
+        slope = (self._told_by(faster) - told) / step
+        share = self.seen_share(plant)
+        return faster_by(
+            told[:, 0], slope[:, 0], self._left[:, 0], self._noise[:, 0], self._size, share
+        )
+
+    @cached_property
+    def _changed_by_swings(self) -> dict[str, tuple[float, float]]:
+        """Parameters that the recordings clearly have otherwise: the model's and their values.
+
+        The model is that of the first plan: what was learned since is no evidence of its own.
+        """
         plant = self._plan.task.plant
         changed = dict[str, tuple[float, float]]()
         for estimate in self.estimates:
-            model = getattr(plant, estimate.parameter)
-            rate = is_frequency(plant, estimate.parameter)
+            name = estimate.parameter
+            model = getattr(plant, name)
+            first = self.history.model.get(name, model)
+            rate = is_frequency(plant, name)
             least = abs(model) * (_LEAST_CHANGE if rate else _LEAST_CHANGE_OF_DAMPING)
-            outside = not estimate.low <= model <= estimate.high
+            outside = not estimate.low <= first <= estimate.high
             if outside and abs(estimate.value - model) > least:
-                changed[estimate.parameter] = (model, estimate.value)
+                changed[name] = (model, estimate.value)
         if not any(is_frequency(plant, name) for name in changed):
             return {}  # a damping alone is left to the arrival state
         return changed
 
     @cached_property
     def plant(self) -> Plant:
-        """The plant with what is changed."""
-        return replace(
-            self._plan.task.plant, **{name: new for name, (_, new) in self.changed.items()}
-        )
+        """The plant with what is changed: its frequencies are those during the moves."""
+        new = {name: value for name, (_, value) in self.changed.items()}
+        return replace(self._plan.task.plant, **new)
 
     def machine(self) -> Identified:
         """The plant with all that recordings tell of it."""
@@ -310,16 +343,29 @@ class _Evidence:
         return JudgedMotion.of_profile(task, move.profile, move.coefficients)
 
     @cached_property
-    def last_motion(self) -> JudgedMotion:
-        """The move that was executed last, on the plant with what is changed."""
-        return self._motion(self.history.moves[-1], self.plant)
-
-    @cached_property
     def _told(self) -> ComplexArray:
-        """What the plant says of the set points of each move (moves, modes)."""
-        motions = [self._motion(move, self.plant) for move in self.history.moves[:-1]]
-        states = [motion.arrival[0] for motion in (*motions, self.last_motion)]
-        return np.stack([self.modes.amplitudes(state) for state in states])
+        """What the plant with what is changed says of the set points of each move."""
+        return self._told_by(self.plant)
+
+    def _told_by(self, plant: Plant) -> ComplexArray:
+        """What a plant says of the set points of each move (moves, modes)."""
+        modes = TipModes(plant, self._plan.task.target)
+        states = [self._motion(move, plant).arrival[0] for move in self.history.moves]
+        return np.stack([modes.amplitudes(state) for state in states])
+
+    @lru_cache(maxsize=4)  # noqa: B019  # it lives as long as the evidence
+    def seen_share(self, plant: Plant) -> float | None:
+        """How much of a plant's swing the tip shows during the move; None where it is not seen.
+
+        1 where the swing is what the plant makes of the joint's motion.
+        """
+        recordings = [one.recording for one in self._read]
+        if all(_is_by_joint(recording) for recording in recordings):
+            return 1.0
+        motion = self._motion(self.history.moves[-1], plant)
+        seen = [tip_share(motion, recording) for recording in recordings]
+        known = [share for share in seen if share is not None]
+        return float(np.median(known)) if known else None
 
     @cached_property
     def _swings(self) -> list[ComplexArray]:
@@ -369,38 +415,42 @@ class _Evidence:
     def _size(self) -> float:
         """The tip's largest displacement from the joint during the last move [m]."""
         times = np.linspace(0, self._plan.task.duration, 200)
-        return float(np.abs(self.last_motion.sample(times).tips).max())
+        return float(np.abs(self._plan.sampled(times).tips).max())
 
-    def maps(self, share: float | None) -> list[ArrivalMap]:
+    @cached_property
+    def maps(self) -> list[ArrivalMap]:
         """How each mode swings at arrival by what the plant says of set points."""
+        share = self.seen_share(self.plant)
         return [
             map_of(self._told[:, k], self._left[:, k], self._noise[:, k], self._size, share)
             for k in range(len(self.modes.values))
         ]
 
-    def _again(self, maps: Sequence[ArrivalMap]) -> ComplexArray:
+    @cached_property
+    def _again(self) -> ComplexArray:
         """What the last move would leave if it were executed again, beside what was wanted."""
-        return np.array([m.swing(t) for m, t in zip(maps, self._told[-1])]) - self._wanted
+        return np.array([m.swing(t) for m, t in zip(self.maps, self._told[-1])]) - self._wanted
 
-    def step(self, maps: Sequence[ArrivalMap]) -> float:
+    @cached_property
+    def step(self) -> float:
         """Share of the correction that is worth making: 0 where what is left may be noise."""
-        left = np.abs(self._again(maps))
-        unsure = np.array([m.deviation_of(t) for m, t in zip(maps, self._told[-1])])
+        left = np.abs(self._again)
+        unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
         if not self.changed and left.sum() <= self.floor:
             return 0.0
         power = float((left**2).sum())
         return power / (power + 2 * float((unsure**2).sum()))
 
-    def told_next(self, maps: Sequence[ArrivalMap], step: float) -> ComplexArray:
+    def told_next(self, step: float) -> ComplexArray:
         """What the plant is to say of the next set points, by mode."""
-        aim = self._wanted + (1 - step) * self._again(maps)
-        return np.array([m.told_for(swing) for m, swing in zip(maps, aim)])
+        aim = self._wanted + (1 - step) * self._again
+        return np.array([m.told_for(swing) for m, swing in zip(self.maps, aim)])
 
-    def at_most(self, maps: Sequence[ArrivalMap], told: ComplexArray) -> float:
+    def at_most(self, told: ComplexArray) -> float:
         """What the next move leaves at most, in 95 of 100 cases."""
         many = 2.0  # deviations
-        aimed = np.abs([m.swing(t) - w for m, t, w in zip(maps, told, self._wanted)])
-        unsure = np.array([m.deviation_of(t) for m, t in zip(maps, told)])
+        aimed = np.abs([m.swing(t) - w for m, t, w in zip(self.maps, told, self._wanted)])
+        unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, told)])
         return float((aimed + many * unsure).sum()) + self.floor
 
     @property
@@ -408,22 +458,25 @@ class _Evidence:
         """What swung at arrival of the last move, of all modes: the mean of its recordings."""
         return float(np.abs(self._swings[-1]).sum(axis=1).mean())
 
-    def _frequency_share(self, maps: Sequence[ArrivalMap]) -> ComplexArray:
+    @cached_property
+    def _frequency_share(self) -> ComplexArray:
         """What of that follows from the parameters that are changed, by mode."""
         if not self.changed:
-            return np.zeros(len(maps), complex)
+            return np.zeros(len(self.modes.values), complex)
         before = self._motion(self.history.moves[-1], self._plan.task.plant)
         modes = TipModes(self._plan.task.plant, self._plan.task.target)
         told_before = modes.amplitudes(before.arrival[0])
-        return np.array([m.share for m in maps]) * (self._told[-1] - told_before)
+        return np.array([m.share for m in self.maps]) * (self._told[-1] - told_before)
 
-    def by_frequency(self, maps: Sequence[ArrivalMap]) -> float:
+    @property
+    def by_frequency(self) -> float:
         """Size of the same."""
-        return float(np.abs(self._frequency_share(maps)).sum())
+        return float(np.abs(self._frequency_share).sum())
 
-    def repeatable(self, maps: Sequence[ArrivalMap]) -> float:
+    @property
+    def repeatable(self) -> float:
         """What the machine leaves beside that, and beside what was wanted."""
-        rest = self._left[-1] - self._frequency_share(maps) - self._wanted
+        rest = self._left[-1] - self._frequency_share - self._wanted
         return float(np.abs(rest).sum())
 
     @property
@@ -450,15 +503,3 @@ class _Evidence:
             f"warning: the moves do not repeat: they leave {', '.join(sizes)} mm; record more of "
             "them, or make a robust plan, by --error"
         ]
-
-
-def _seen_share(evidence: _Evidence, read: Sequence[_Read]) -> float | None:
-    """How much of the plant's swing the tip shows during the move; None where it is not seen.
-
-    1 where the swing is what the plant makes of the joint's motion.
-    """
-    if all(one.by_joint for one in read):
-        return 1.0
-    shares = [tip_share(evidence.last_motion, one.recording) for one in read]
-    seen = [share for share in shares if share is not None]
-    return float(np.median(seen)) if seen else None

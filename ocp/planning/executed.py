@@ -119,9 +119,16 @@ class History:
         Of one task on one machine.
     wanted : ModalState or None
         The state on arrival that was asked for before anything was learned; None is rest.
+    model : mapping of str to float
+        The plant's frequencies and dampings before anything was learned.
     """
 
     example: ClassVar[str] = "the history of a plan that learn made"
 
     moves: tuple[Executed, ...] = ()
     wanted: ModalState | None = None
+    model: Mapping[str, float] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        model = {name: finite(name, value) for name, value in self.model.items()}
+        object.__setattr__(self, "model", model)

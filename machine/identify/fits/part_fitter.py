@@ -84,13 +84,13 @@ class PartFitter:
         return self.recording.part(self.rows(part))
 
     @property
-    def _fastest(self) -> float:
+    def fastest(self) -> float:
         """Frequency of the fastest mode, where the slowest is that of the swing [Hz]."""
         return self.frequency * float(self._modes[-1] / self._modes[0])
 
     def thinned(self, piece: Recording, samples: float = SAMPLES) -> Recording:
         """A piece with so many samples a period of the fastest mode."""
-        return piece.averaged(1 / max(samples * self._fastest * piece.step, 1e-9))
+        return piece.averaged(1 / max(samples * self.fastest * piece.step, 1e-9))
 
     def model(self, part: Part, thin: bool = True, samples: float = SAMPLES) -> SwingModel:
         """The model of a part: without saturated samples, with drift or hub, as the part says.
@@ -101,7 +101,7 @@ class PartFitter:
         piece = self.thinned(whole, samples) if thin and not part.saturated else whole
         columns: BasisColumns = FreeDecay(self.response, piece)
         if part.hub:
-            columns = self.columns_with_joint(part, whole, piece)
+            columns = self._with_joint(part, whole, piece)
         cosines = 0
         if part.drifts:
             cosines = int(0.5 * self.frequency * np.ptp(piece.time))  # to a quarter of the swing's
@@ -112,13 +112,13 @@ class PartFitter:
                 model.counts = ~saturated(piece.values, model.fitted(part.vector))
         return model
 
-    def columns_with_joint(self, part: Part, whole: Recording, piece: Recording) -> BasisColumns:
+    def _with_joint(self, part: Part, whole: Recording, piece: Recording) -> BasisColumns:
         """The columns of a piece whose joint moves as all samples of the part say."""
         ends = (part.begin, part.end)
         if ends not in self._splines:
             self._splines[ends] = smooth(self.thinned(whole))
         spline = self._splines[ends]
-        fastest = tau * self._fastest
+        fastest = tau * self.fastest
         if self._scaled and self.response.is_linear:
             return Forced(self.response, piece.time, spline, fastest)
         return Driven(self.response, piece.time, spline, fastest, self._scaled)
