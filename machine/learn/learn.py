@@ -106,8 +106,8 @@ def learn(
         by_frequency=evidence.by_frequency,
         repeatable=evidence.repeatable,
         scatter=evidence.scatter,
-        floor=evidence.floor,
-        next_at_most=evidence.at_most(told),
+        floor=evidence.floor + evidence.unseen,
+        next_at_most=evidence.at_most(told) + evidence.unseen,
         changed=evidence.changed,
         estimates=evidence.estimates,
         start={one.recording.name: one.start for one in read},
@@ -232,6 +232,11 @@ class _Evidence:
         self._read = read
         self.modes = TipModes(self.plant, plan.task.target)
 
+    @property
+    def _by_joint(self) -> bool:
+        """Whether no tip was recorded."""
+        return all(one.by_joint for one in self._read)
+
     # The model
 
     @cached_property
@@ -283,6 +288,8 @@ class _Evidence:
         told = self._told_by(plant)
         slope = (self._told_by(faster) - told) / step
         share = self.seen_share(plant)
+        if self._by_joint:
+            return 0.0  # the swing is what this frequency makes of the joint's motion
         return faster_by(
             told[:, 0], slope[:, 0], self._left[:, 0], self._noise[:, 0], self._size, share
         )
@@ -298,9 +305,9 @@ class _Evidence:
         for estimate in self.estimates:
             name = estimate.parameter
             model = getattr(plant, name)
-            first = self.history.model.get(name, model)
             rate = is_frequency(plant, name)
             least = abs(model) * (_LEAST_CHANGE if rate else _LEAST_CHANGE_OF_DAMPING)
+            first = self.history.model.get(name, model)
             outside = not estimate.low <= first <= estimate.high
             if outside and abs(estimate.value - model) > least:
                 changed[name] = (model, estimate.value)
@@ -359,9 +366,9 @@ class _Evidence:
 
         1 where the swing is what the plant makes of the joint's motion.
         """
-        recordings = [one.recording for one in self._read]
-        if all(_is_by_joint(recording) for recording in recordings):
+        if self._by_joint:
             return 1.0
+        recordings = [one.recording for one in self._read]
         motion = self._motion(self.history.moves[-1], plant)
         seen = [tip_share(motion, recording) for recording in recordings]
         known = [share for share in seen if share is not None]
@@ -421,8 +428,12 @@ class _Evidence:
     def maps(self) -> list[ArrivalMap]:
         """How each mode swings at arrival by what the plant says of set points."""
         share = self.seen_share(self.plant)
+        # what earlier moves left by the joint was computed with another frequency
+        told, left, noise = (
+            rows[-1:] if self._by_joint else rows for rows in (self._told, self._left, self._noise)
+        )
         return [
-            map_of(self._told[:, k], self._left[:, k], self._noise[:, k], self._size, share)
+            map_of(told[:, k], left[:, k], noise[:, k], self._size, share)
             for k in range(len(self.modes.values))
         ]
 
@@ -491,6 +502,24 @@ class _Evidence:
         if self._scatter is not None:
             single = np.hypot(single, self._scatter)
         return 2 * float(single.sum())
+
+    @cached_property
+    def unseen(self) -> float:
+        """What a torque's frequency does not tell: twice the deviation that it leaves [m].
+
+        0 where a tip was recorded.
+        """
+        if not self._by_joint:
+            return 0.0
+        largest = 0.0
+        for estimate in self.estimates:
+            deviation = (estimate.high - estimate.low) / 4
+            if not is_frequency(self.plant, estimate.parameter):
+                continue
+            value = getattr(self.plant, estimate.parameter) + deviation
+            told = self._told_by(replace(self.plant, **{estimate.parameter: value}))[-1]
+            largest = max(largest, 2 * float(np.abs(told - self._told[-1]).sum()))
+        return largest
 
     @property
     def doubts(self) -> list[str]:

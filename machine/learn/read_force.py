@@ -27,7 +27,7 @@ from quietarm.ocp.planning.executed import Measured, Swing
 Array = NDArray[np.float64]
 
 
-_UNDERSTATED = 2.0
+_UNDERSTATED = 1.0
 """Times the deviation of a frequency's fit: a torque that is sampled seldom has folded noise."""
 _OF_LARGE_SWINGS = 0.01
 """Share of a frequency that it is less certain after a swing as large as that during the move."""
