@@ -106,8 +106,8 @@ def learn(
         by_frequency=evidence.by_frequency,
         repeatable=evidence.repeatable,
         scatter=evidence.scatter,
-        floor=evidence.floor + evidence.unseen,
-        next_at_most=evidence.at_most(told) + evidence.unseen,
+        floor=evidence.floor + evidence.beyond,
+        next_at_most=evidence.at_most(told) + evidence.beyond,
         changed=evidence.changed,
         estimates=evidence.estimates,
         start={one.recording.name: one.start for one in read},
@@ -503,8 +503,13 @@ class _Evidence:
             single = np.hypot(single, self._scatter)
         return 2 * float(single.sum())
 
+    @property
+    def beyond(self) -> float:
+        """What moves the tip beside its modes, and what a torque does not tell [m]."""
+        return self._unseen + max(one.after.other for one in self._read)
+
     @cached_property
-    def unseen(self) -> float:
+    def _unseen(self) -> float:
         """What a torque's frequency does not tell: twice the deviation that it leaves [m].
 
         0 where a tip was recorded.

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.fits.diagnosis import exceeds, saturated
+from quietarm.machine.identify.fits.diagnosis import saturated
 from quietarm.machine.identify.fits.fitting import power_near
 from quietarm.machine.identify.fits.part_fitter import FEW_SAMPLES, PartFitter
 from quietarm.machine.identify.fits.swing_model import SwingModel
@@ -18,7 +17,7 @@ from quietarm.machine.identify.swings.ring_down_fit import fit_ring_down
 from quietarm.machine.identify.swings.ring_downs import LEAST_PERIODS
 from quietarm.machine.identify.swings.swing_changes import has_changes, with_changes
 from quietarm.machine.learn.tip_modes import TipModes
-from quietarm.machine.recordings.recording import LEAST_ROWS, Recording
+from quietarm.machine.recordings.recording import Recording, noise_of
 from quietarm.models import Plant
 from quietarm.ocp.planning.executed import Measured, Swing
 from quietarm.ocp.uncertainty import with_values
@@ -45,15 +44,17 @@ class AfterMove:
         For the history.
     part : Part or None
         The ring-down, as `identify` fits it; None where the swing is lost in the noise.
-    dry : float
-        Displacement by which dry friction stops the swing [m]; 0 where it shows none.
     notes : tuple of str
         What is to be known of it.
+    other : float
+        Amplitude of what moves the tip then beside its modes and the sensor's noise [m]: further
+        modes, friction, the servo; 0 of an accelerometer.
     """
 
     measured: Measured
     part: Part | None
     notes: tuple[str, ...] = ()
+    other: float = 0.0
 
 
 def modal_names(plant: Plant) -> list[str]:
@@ -125,7 +126,7 @@ def read_swing(
         _refuse_clipped(fitter, fitted)
     swings = _at_arrival(fitter, fitted, p, arrival, place)
     stands_out = any(swing.amplitude > _STANDS_OUT * swing.deviation for swing in swings)
-    if told and names and stands_out and _is_swing(fitted):
+    if told and names and stands_out and _is_swing(fitter, fitted):
         part = fitted
     elif told and names:  # the plant's own frequencies, which the noise does not draw aside
         p = values_of(plant, names)
@@ -137,17 +138,36 @@ def read_swing(
     notes = (f"warning: {recording.name}: {part.warning}",) if part and part.warning else ()
     if fitted.saturated:
         notes = (*notes, f"{recording.name}: {fitted.saturated} saturated samples are left out")
-    return AfterMove(measured, part, notes)
+    return AfterMove(measured, part, notes, _other(fitter, fitted, p))
+
+
+def _other(fitter: PartFitter, part: Part, p: Array) -> float:
+    """Amplitude of what a tip does beside its modes and its noise."""
+    if "tip" not in fitter.recording.signals:
+        return 0.0
+    model = fitter.model(replace(part, values={}))
+    left = model.residual(model.start(p))
+    thinned = len(fitter.piece(part).time) / len(model.time)
+    noise = noise_of(fitter.piece(part).values) / thinned**0.5
+    power = np.maximum((left**2).mean(axis=1) - noise**2, 0.0)
+    return float(np.sqrt(2 * power.max()))
 
 
 def _rows_of(values: Array | None, rows: slice) -> Array | None:
     return None if values is None else values[rows]
 
 
-def _is_swing(part: Part) -> bool:
-    """Whether a fit meets what it is of, and no noise or drive shows in its place."""
+def _is_swing(fitter: PartFitter, part: Part) -> bool:
+    """Whether a fit meets a swing and tells its frequency: no noise, drift or drive in its place."""
     most_unexplained = 0.2
-    return part.unexplained < most_unexplained and part.cause != "bound"
+    most_unsure = 0.01  # share of a frequency
+    unsure = [
+        part.deviations[name] / max(part.values[name], 1e-300)
+        for name, is_rate in zip(fitter.names, fitter.are_rates)
+        if is_rate
+    ]
+    certain = min(unsure, default=1.0) < most_unsure
+    return certain and part.unexplained < most_unexplained and part.cause != "bound"
 
 
 def _fitted(fitter: PartFitter, rows: slice) -> tuple[Part, Array]:
