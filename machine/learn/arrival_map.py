@@ -76,7 +76,9 @@ def map_of(
     share : float, optional
         How much of the plant's swing the tip shows during the move, where that is seen.
     """
-    guess, covariance = _fitted(np.stack([told, np.ones_like(told)], axis=1), left, noise, size, share)
+    guess, covariance = _fitted(
+        np.stack([told, np.ones_like(told)], axis=1), left, noise, size, share
+    )
     return ArrivalMap(complex(guess[0]), complex(guess[1]), covariance)
 
 

@@ -114,6 +114,45 @@ def _with_frequencies(plan: Plan, factor: float) -> JudgedMotion | None:
     return JudgedMotion.of_profile(task, plan.profile, plan.coefficients)
 
 
+def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
+    """That a joint leaves the plan's path by more than a servo does, in words; empty where not.
+
+    It may be another plan's move.
+    """
+    much = 3e-5  # share of the way's power
+    if start.signal != "angle" or 1 - start.explained < much:
+        return ""
+    assert recording.angle is not None
+    rows = recording.rows(start.time, start.time + plan.task.duration)
+    size = float(recording.angle[rows].std()) * (1 - start.explained) ** 0.5
+    linear = plan.task.plant.joint == LINEAR
+    words = f"{1e3 * size:.2g} mm" if linear else f"{np.degrees(size):.2g} deg"
+    return (
+        f"warning: {recording.name}: the joint is {words} (rms) off the plan's path: is it the "
+        "recording of this plan?"
+    )
+
+
+def refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
+    """ValueError where a recording is of an earlier move of a plan's history, not of the plan."""
+    far_better = 0.2  # times what the plan leaves unexplained
+    if start.signal not in ("angle", "tip") or plan.learned is None:
+        return
+    values = recording.measured[start.signal].reshape(len(recording.time), -1)[:, 0]
+    for number, move in enumerate(plan.learned.moves, start=1):
+        task = replace(plan.task.certain, duration=move.move[2], final=None)
+        motion = JudgedMotion.of_profile(task, move.profile, move.coefficients)
+        if move.coefficients == plan.coefficients:
+            continue
+        search = _Search(recording.time, values, _courses(motion, start.signal), task.duration)
+        _, explained = search.refined(start.time)
+        if 1 - explained < far_better * (1 - start.explained):
+            raise ValueError(
+                f"{recording.name}: it is of move {number}, which an earlier plan made, and not of "
+                "this plan; give the recording of this plan's move"
+            )
+
+
 def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
     """How much of the plant's swing a tip shows during the move, by a motion with its frequency.
 
@@ -220,9 +259,7 @@ class _Search:
         least = 1e-3  # of what is unexplained, from which on a clock is doubted
         if 1 - explained < least:
             return
-        found: Any = _least(
-            lambda x: self._unexplained(lag + step * x[0], 1 + per_cent * x[1]), 2
-        )
+        found: Any = _least(lambda x: self._unexplained(lag + step * x[0], 1 + per_cent * x[1]), 2)
         stretch = 1 + per_cent * float(found.x[1])
         if abs(stretch - 1) > per_cent and found.fun < min(far_better * (1 - explained), least):
             raise ValueError(_other_clock(name, stretch, self._duration))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from quietarm.machine.identify.identified import Estimate, Identified
 from quietarm.ocp.planning.plan import Plan
@@ -44,6 +44,8 @@ class Learning:
         What is to be known before the plan is executed.
     machine : Identified
         The plant with what was learned, for other moves.
+    by_joint : bool
+        Whether no tip was recorded, so that all follows from the joint and its torque.
     """
 
     plan: Plan
@@ -58,9 +60,25 @@ class Learning:
     start: Mapping[str, float]
     step: float
     machine: Identified
+    by_joint: bool
     notes: tuple[str, ...] = field(default=())
 
     @property
     def is_done(self) -> bool:
         """Whether there is nothing more to learn: what is left is noise."""
         return self.step == 0.0
+
+    def machine_from(self, known: Identified) -> Identified:
+        """A machine that is known from other recordings, with what was learned in its place."""
+        learned = {estimate.parameter: estimate.value for estimate in self.estimates}
+        others = [one for one in known.estimates if one.parameter not in learned]
+        untold = {k: why for k, why in known.not_identifiable.items() if k not in learned}
+        return replace(
+            known,
+            plant=replace(known.plant, **learned),
+            estimates=(*self.estimates, *others),
+            not_identifiable=untold,
+            parts=(*known.parts, *self.machine.parts),
+            rough={name: value for name, value in known.rough.items() if name not in learned},
+            versions=self.machine.versions,
+        )

@@ -2,8 +2,8 @@
 
 While the joint moves, its torque accelerates the masses, overcomes friction, and holds against the
 swing. Which frequency the swing has is fitted to that. What swings at arrival then follows from the
-joint's recorded motion by the plant's equations: after arrival dry friction holds the joint, and its
-torque shows little.
+joint's recorded motion by the plant's equations: after arrival dry friction holds the joint, and
+its torque shows little.
 """
 
 from __future__ import annotations
@@ -105,8 +105,8 @@ def read_torque(recording: Recording, begin: float, end: float, plant: Plant) ->
     most_unexplained = 0.2
     if misfit**2 - noise**2 > most_unexplained**2:
         warning = (
-            f"inertia, swing and friction leave {misfit:.0%} of the torque during the move, so that "
-            "it tells no frequency; record the tip as well"
+            f"inertia, swing and friction leave {misfit:.0%} of the torque during the move, which "
+            "then tells no frequency; record the tip as well"
         )
         return replace(part, cause="misfit", warning=warning, misfit=misfit, noise=noise)
     return replace(
@@ -167,7 +167,9 @@ def swing_by_joint(
     largest = max(float(np.abs(tips).max()), 1e-300)
     swung = sum(swing.amplitude for swing in swings) / largest
     deviations = {
-        name: float(np.hypot(_UNDERSTATED * deviation, _OF_LARGE_SWINGS * swung * part.values[name]))
+        name: float(
+            np.hypot(_UNDERSTATED * deviation, _OF_LARGE_SWINGS * swung * part.values[name])
+        )
         for name, deviation in part.deviations.items()
     }
     part = replace(part, deviations=deviations)

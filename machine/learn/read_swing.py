@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import tau
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from quietarm.machine.identify.fits.diagnosis import saturated
 from quietarm.machine.identify.fits.fitting import power_near
 from quietarm.machine.identify.fits.part_fitter import FEW_SAMPLES, PartFitter
 from quietarm.machine.identify.fits.swing_model import SwingModel
-from quietarm.machine.identify.identified import Part, is_modal, values_of
+from quietarm.machine.identify.identified import Part, is_frequency, is_modal, values_of
 from quietarm.machine.identify.swings.ring_down_fit import fit_ring_down
 from quietarm.machine.identify.swings.ring_downs import LEAST_PERIODS
 from quietarm.machine.identify.swings.swing_changes import has_changes, with_changes
@@ -135,10 +136,22 @@ def read_swing(
     values = dict(part.values) if part else {}
     deviations = dict(part.deviations) if part else {}
     measured = Measured(recording.name, tuple(swings), values, deviations)
-    notes = (f"warning: {recording.name}: {part.warning}",) if part and part.warning else ()
+    return AfterMove(measured, part, _notes(fitter, fitted, part), _other(fitter, fitted, p))
+
+
+def _notes(fitter: PartFitter, fitted: Part, part: Part | None) -> tuple[str, ...]:
+    """What is to be known of a swing: how it changes with its amplitude, and what is doubted."""
+    name = fitter.recording.name
+    notes = list[str]()
+    for parameter, (low, high) in (part.spread if part else {}).items():
+        if is_frequency(fitter.plant, parameter):
+            hertz = f"{low / tau:.4g} to {high / tau:.4g} Hz"
+            notes.append(f"{name}: {parameter} depends on the amplitude of the swing, {hertz}")
+    if part and part.warning and part.cause != "amplitude":
+        notes.append(f"warning: {name}: {part.warning}")
     if fitted.saturated:
-        notes = (*notes, f"{recording.name}: {fitted.saturated} saturated samples are left out")
-    return AfterMove(measured, part, notes, _other(fitter, fitted, p))
+        notes.append(f"{name}: {fitted.saturated} samples at the sensor's limit are left out")
+    return tuple(notes)
 
 
 def _other(fitter: PartFitter, part: Part, p: Array) -> float:
@@ -158,7 +171,7 @@ def _rows_of(values: Array | None, rows: slice) -> Array | None:
 
 
 def _is_swing(fitter: PartFitter, part: Part) -> bool:
-    """Whether a fit meets a swing and tells its frequency: no noise, drift or drive in its place."""
+    """Whether a fit meets a swing and tells its frequency: no noise or drift in its place."""
     most_unexplained = 0.2
     most_unsure = 0.01  # share of a frequency
     unsure = [
@@ -208,7 +221,6 @@ def _at_arrival(
     """Amplitude and phase of every mode at arrival, by its first periods with some parameters."""
     plant = with_values(fitter.plant, dict(zip(fitter.names, p.tolist())))
     modes = TipModes(plant, place)
-    piece = fitter.piece(part)
     lasts = _FIRST_PERIODS / float(modes.frequencies[0])
     short = fitter.recording.rows(part.begin, min(part.end, part.begin + lasts))
     if part.saturated:

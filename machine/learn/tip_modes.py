@@ -48,6 +48,8 @@ class TipModes:
         K, D = (np.array(matrix, float) for matrix in (system.K, system.D))
         size = plant.modes
         zero, one = np.zeros((size, size)), np.eye(size)
+        values: Any
+        vectors: Any
         values, vectors = np.linalg.eig(np.block([[zero, one], [-K, -D]]).astype(complex))
         inverse = np.linalg.inv(vectors)
         order = [int(k) for k in np.argsort(values.imag) if values[k].imag > 0]
@@ -56,7 +58,7 @@ class TipModes:
                 f"{plant.name} has {size - len(order)} of {size} modes that do not swing; learning "
                 "needs a damping ratio below 1"
             )
-        by_modes = _tips_by_modes(plant, joint) @ vectors[:size, order]
+        by_modes: Any = _tips_by_modes(plant, joint) @ vectors[:size, order]
         most = np.abs(by_modes).argmax(axis=0)
         scale = by_modes[most, range(size)]
         if (np.abs(scale) <= 1e-12 * np.abs(vectors[:size, order]).max(axis=0)).any():
@@ -76,7 +78,8 @@ class TipModes:
 
     def amplitudes(self, state: Any) -> ComplexArray:
         """The complex amplitude of each mode in a state, W and then W'."""
-        return self._parts @ np.asarray(state, float)
+        amplitudes: ComplexArray = self._parts @ np.asarray(state, complex)
+        return amplitudes
 
     def state(self, amplitudes: ComplexArray) -> ModalState:
         """The state in which the modes have these complex amplitudes."""

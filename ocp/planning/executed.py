@@ -1,4 +1,4 @@
-"""What a machine left of executed moves: the history that a plan that was learned keeps in its file.
+"""What a machine left of executed moves: the history that a learned plan keeps in its file.
 
 It is what was measured, in units of the tip, and holds whatever the plant's parameters become.
 """
