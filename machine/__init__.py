@@ -1,7 +1,8 @@
 """Between a machine and its model: its recordings, and the plant that they tell of.
 
 Rooms: `tables` reads files of numbers as other programs write them, `recordings` are what was
-measured, mended, and `identify` finds a plant's parameters from them.
+measured, mended, `identify` finds a plant's parameters from them, and `learn` the next plan from
+those of an executed one.
 """
 
 from quietarm.loading import attach

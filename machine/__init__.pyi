@@ -1,2 +1,3 @@
 from . import identify as identify
+from . import learn as learn
 from .recordings.recording import Recording as Recording

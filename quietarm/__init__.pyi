@@ -6,6 +6,7 @@ from . import studies as studies
 from . import views as views
 from .machine import Recording as Recording
 from .machine.identify import identify as identify
+from .machine.learn import learn as learn
 from .metaheuristics import Indicator as Indicator
 from .metaheuristics import SearchMethod as SearchMethod
 from .metaheuristics import search as search

@@ -31,6 +31,7 @@ COMMANDS = {
     "reproduce": "Recompute the paper.",
     "sweep": "Plan every move of a grid.",
     "identify": "Fit a plant's parameters to recordings of a machine.",
+    "learn": "Plan the next move from a recording of the last one.",
     "export": "Write a plan for a controller, or as an animation.",
     "explore": "Change a move by hand, on a page in the browser.",
     "list": "List plants, problems or methods.",

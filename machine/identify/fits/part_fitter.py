@@ -84,13 +84,13 @@ class PartFitter:
         return self.recording.part(self.rows(part))
 
     @property
-    def _fastest(self) -> float:
+    def fastest(self) -> float:
         """Frequency of the fastest mode, where the slowest is that of the swing [Hz]."""
         return self.frequency * float(self._modes[-1] / self._modes[0])
 
     def thinned(self, piece: Recording, samples: float = SAMPLES) -> Recording:
         """A piece with so many samples a period of the fastest mode."""
-        return piece.averaged(1 / max(samples * self._fastest * piece.step, 1e-9))
+        return piece.averaged(1 / max(samples * self.fastest * piece.step, 1e-9))
 
     def model(self, part: Part, thin: bool = True, samples: float = SAMPLES) -> SwingModel:
         """The model of a part: without saturated samples, with drift or hub, as the part says.
@@ -118,7 +118,7 @@ class PartFitter:
         if ends not in self._splines:
             self._splines[ends] = smooth(self.thinned(whole))
         spline = self._splines[ends]
-        fastest = tau * self._fastest
+        fastest = tau * self.fastest
         if self._scaled and self.response.is_linear:
             return Forced(self.response, piece.time, spline, fastest)
         return Driven(self.response, piece.time, spline, fastest, self._scaled)

@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from itertools import chain
-from pathlib import Path
+from collections.abc import Collection, Sequence
 
 import click
 
 from quietarm.machine import Recording
 from quietarm.machine import identify as identification
 from quietarm.machine.identify.identified import is_modal
-from quietarm.machine.recordings.read_recording import (
-    Columns,
-    ReadRecording,
-    notes_in_words,
-    read_recording,
-)
+from quietarm.machine.recordings.read_recording import notes_in_words
 from quietarm.models import Plant
-from quietarm.models.dimensions import words_of
 from quietarm.ocp.checks import has_no
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
 from quietarm.studies.cli.outputs import PICTURE, answer_files, ending_of, finish, output_option
 from quietarm.studies.cli.plants import Kind, parse_plant
-from quietarm.studies.cli.quantities import (
-    once,
-    parse_interval,
-    parse_rate,
-    parse_scales,
-    parse_units,
-)
+from quietarm.studies.cli.quantities import parse_interval
+from quietarm.studies.cli.recording_options import RECORDED, read_recordings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.machine_rows import (
@@ -41,25 +28,11 @@ from quietarm.views.report.machine_rows import (
     refuse_defaults,
 )
 
-_UNITS = ("As time:ms,angle:deg,tip:mm,acceleration:g, of a linear axis angle:mm,torque:N. "
-          "[default: those of the columns' names, or SI]")  # fmt: skip
-
 
 @command(
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
     SET,
-    option("--time", help="Column of the time.  [default: the one that is called so, or the first "
-           "if it rises evenly]"),
-    option("--rate", type=Parsed("rate", parse_rate), help="Samples per second, as 1kHz, of files "
-           "without a column of the time."),
-    option("--angle", help="Column of the joint's angle, of a linear axis its position; without "
-           "it the joint was held."),
-    option("--tip", multiple=True, help="Column of a tip's displacement."),
-    option("--acceleration", multiple=True, help="Column of an accelerometer at a tip."),
-    option("--torque", help="Column of the joint's torque, of a linear axis its force."),
-    option("--units", type=Parsed("units", parse_units), help=_UNITS),
-    option("--scale", "scales", type=Parsed("scale", parse_scales), multiple=True,
-           help="What a count is in SI units, as angle=2pi/4096,tip=1e-5."),
+    *RECORDED,
     option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
            help="Begin and end of a ring-down [s], as 3.2:7.3. [default: they are found]"),
     option("--free", type=NAMES, help="The parameters that are sought, as omega,zeta. [default: "
@@ -90,7 +63,7 @@ def identify(given: Given) -> None:
     if not paths:
         raise click.UsageError("give a RECORDING before PLANT")
     plant = given.read_plant(kind)
-    read = _read(given, paths, plant)
+    read = read_recordings(given, paths, plant)
     recordings = [one.recording for one in read]
     notes = notes_in_words(read)
     if given.check:
@@ -125,44 +98,6 @@ def identify(given: Given) -> None:
 def _others(plant: Plant, names: Collection[str]) -> list[str]:
     """The parameters of a plant that are none of these."""
     return [name for name in plant.measured if name not in names]
-
-
-def _read(given: Given, paths: Sequence[Path], plant: Plant) -> list[ReadRecording]:
-    """The recordings of files, by the columns that were named."""
-    # columns of which at least one shows how the machine rings
-    rings = ("tip", "acceleration", "torque")
-    names = {
-        quantity: [column] if isinstance(column, str) else list(column or ())
-        for quantity, column in given.pick("time", "angle", *rings).items()
-    }
-    if not any(names[quantity] for quantity in rings):
-        raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
-    if given.rate and given.time:
-        raise click.UsageError("--rate is for files without a column of the time; leave --time out")
-    units = given.units or {}
-    scales = once(chain.from_iterable(given.scales), "--scale ")
-    _refuse_idle(names, {"--units": units, "--scale": scales}, plant.joint, given.rate is not None)
-    columns = Columns(names, units, scales, given.rate, plant.joint)
-    short = len({path.name for path in paths}) == len(paths)
-    return [read_recording(path, columns, path.name if short else str(path)) for path in paths]
-
-
-def _refuse_idle(
-    names: Mapping[str, Sequence[str]],
-    options: Mapping[str, Mapping[str, object]],
-    joint: str,
-    has_rate: bool,
-) -> None:
-    """Refuse units and scales of quantities of which no column is read."""
-    read = {quantity for quantity, columns in names.items() if columns}
-    read |= set() if has_rate else {"time"}
-    read |= {words_of(quantity).of(joint) for quantity in read}
-    for option_name, entries in options.items():
-        for quantity in entries:
-            if quantity not in read:
-                raise click.UsageError(
-                    f"{option_name} has {quantity}, and no column of it is read; leave it out"
-                )
 
 
 def _assumed(names: Sequence[str] | None, plant: Plant) -> Collection[str]:

@@ -1,0 +1,2 @@
+from .learn import learn as learn
+from .learning import Learning as Learning

@@ -1,0 +1,418 @@
+"""What all moves of a plan's history together tell of a machine: its model, then its arrivals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.machine.identify.combine import combine
+from quietarm.machine.identify.identified import Estimate, Identified, Part, is_frequency
+from quietarm.machine.learn.arrival_map import ArrivalMap, faster_by, map_of
+from quietarm.machine.learn.find_start import tip_share
+from quietarm.machine.learn.read_force import swing_by_joint
+from quietarm.machine.learn.read_swing import AfterMove, modal_names
+from quietarm.machine.learn.tip_modes import TipModes
+from quietarm.machine.recordings.recording import Recording
+from quietarm.models import Plant
+from quietarm.ocp.judged_motion import JudgedMotion
+from quietarm.ocp.planning.executed import Executed, History
+from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.record import versions
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+_LEAST_CHANGE = 5e-4
+"""Share of a frequency, below which a difference from the model is left to the arrival state."""
+_LEAST_CHANGE_OF_DAMPING = 0.2
+"""The same of a damping."""
+
+
+@dataclass(frozen=True)
+class ReadMove:
+    """When a move began in a recording [s], when it ended, and what swung after it.
+
+    Without a tip that follows from the joint's motion.
+    """
+
+    recording: Recording
+    start: float
+    arrival: float
+    after: AfterMove
+    doubt: str = ""
+
+    @property
+    def by_joint(self) -> bool:
+        """Whether no tip was recorded."""
+        return is_by_joint(self.recording)
+
+    def on(self, plant: Plant, place: float) -> ReadMove:
+        """The same by another plant's frequencies."""
+        if not self.by_joint:
+            return self
+        part = self.after.part or Part(self.recording.name, self.start, self.arrival)
+        after = swing_by_joint(self.recording, part, self.arrival, plant, place)
+        return replace(self, after=replace(after, notes=self.after.notes))
+
+
+def is_by_joint(recording: Recording) -> bool:
+    """Whether a recording has no tip, so that its swing follows from the joint."""
+    return recording.tip is None and recording.acceleration is None
+
+
+def evidence_of(plan: Plan, read: Sequence[ReadMove]) -> Evidence:
+    """What the moves of a plan's history and recordings of the last one tell."""
+    after = [one.after for one in read]
+    return Evidence(plan, _history_with(plan, after), read)
+
+
+def _history_with(plan: Plan, read: Sequence[AfterMove]) -> History:
+    """The history of a plan with what was measured of it now."""
+    plant = plan.task.plant
+    model = {name: getattr(plant, name) for name in modal_names(plant)}
+    history = plan.learned or History(wanted=plan.task.final, model=model)
+    measured = tuple(one.measured for one in read)
+    now = Executed(plan.profile, plan.coefficients, plan.task.move, measured)
+    *before, last = [*history.moves, None] if not history.moves else history.moves
+    if last is not None and _same_motion(last, now):
+        now = replace(now, measured=(*last.measured, *measured))
+        return replace(history, moves=(*before, now))
+    return replace(history, moves=(*history.moves, now))
+
+
+def _same_motion(first: Executed, second: Executed) -> bool:
+    return (first.profile, first.coefficients, first.move) == (
+        second.profile, second.coefficients, second.move,
+    )  # fmt: skip
+
+
+class Evidence:
+    """What all moves together tell of a machine.
+
+    Parameters
+    ----------
+    plan : Plan
+        That was executed last.
+    history : History
+        All moves, the last one with it.
+    read : sequence of ReadMove
+        What was read of the last one.
+    """
+
+    def __init__(self, plan: Plan, history: History, read: Sequence[ReadMove]) -> None:
+        self._plan = plan
+        self.history = history
+        self._read = read
+        self.modes = TipModes(self.plant, plan.task.target)
+
+    @property
+    def by_joint(self) -> bool:
+        """Whether no tip was recorded."""
+        return all(one.by_joint for one in self._read)
+
+    # The model
+
+    @cached_property
+    def _parts(self) -> list[Part]:
+        """What each recording of the history tells of the plant's parameters."""
+        read = {part.recording: part for one in self._read if (part := one.after.part)}
+        parts = list[Part]()
+        for number, move in enumerate(self.history.moves, start=1):
+            is_last = number == len(self.history.moves)
+            for one in move.measured:
+                if not one.values:
+                    continue
+                known = read.get(one.recording) if is_last else None
+                name = f"move {number}, {one.recording}"
+                values, deviations = dict(one.values), dict(one.deviations)
+                part = known or Part(one.recording, 0.0, 0.0, values, deviations)
+                parts.append(replace(part, recording=name))
+        return parts
+
+    @cached_property
+    def estimates(self) -> tuple[Estimate, ...]:
+        """Frequencies and dampings by all recordings."""
+        estimates = list[Estimate]()
+        for name in modal_names(self._plan.task.plant):
+            telling = [part for part in self._parts if name in part.values]
+            estimates += combine([name], telling).estimates if telling else []
+        return tuple(estimates)
+
+    @cached_property
+    def changed(self) -> dict[str, tuple[float, float]]:
+        """Parameters that are changed: the model's value, and the new one.
+
+        A frequency is that during the moves, by what the swings at arrival tell beside it.
+        """
+        if not self._changed_by_swings:
+            return {}
+        plant = self._plan.task.plant
+        swings = {name: value for name, (_, value) in self._changed_by_swings.items()}
+        rates = [name for name in plant.measured if is_frequency(plant, name)]
+        after = replace(plant, **swings)
+        factor = 1 + self._faster_by(after, rates)
+        moving = swings | {name: factor * getattr(after, name) for name in rates}
+        return {name: (getattr(plant, name), value) for name, value in moving.items()}
+
+    def _faster_by(self, plant: Plant, rates: Sequence[str]) -> float:
+        """By what share the slowest mode is faster during the moves than after them."""
+        step = 1e-3
+        faster = replace(plant, **{name: (1 + step) * getattr(plant, name) for name in rates})
+        told = self._told_by(plant)
+        slope = (self._told_by(faster) - told) / step
+        share = self.seen_share(plant)
+        if self.by_joint:
+            return 0.0  # the swing is what this frequency makes of the joint's motion
+        return faster_by(
+            told[:, 0], slope[:, 0], self._left[:, 0], self._noise[:, 0], self._size, share
+        )
+
+    @cached_property
+    def _changed_by_swings(self) -> dict[str, tuple[float, float]]:
+        """Parameters that the recordings clearly have otherwise: the model's and their values.
+
+        The model is that of the first plan: what was learned since is no evidence of its own.
+        """
+        plant = self._plan.task.plant
+        changed = dict[str, tuple[float, float]]()
+        for estimate in self.estimates:
+            name = estimate.parameter
+            model = getattr(plant, name)
+            rate = is_frequency(plant, name)
+            least = abs(model) * (_LEAST_CHANGE if rate else _LEAST_CHANGE_OF_DAMPING)
+            first = self.history.model.get(name, model)
+            outside = not estimate.low <= first <= estimate.high
+            if outside and abs(estimate.value - model) > least:
+                changed[name] = (model, estimate.value)
+        if not any(is_frequency(plant, name) for name in changed):
+            return {}  # a damping alone is left to the arrival state
+        return changed
+
+    @cached_property
+    def plant(self) -> Plant:
+        """The plant with what is changed: its frequencies are those during the moves."""
+        new = {name: value for name, (_, value) in self.changed.items()}
+        return replace(self._plan.task.plant, **new)
+
+    def machine(self) -> Identified:
+        """The plant with all that recordings tell of it."""
+        values = {estimate.parameter: estimate.value for estimate in self.estimates}
+        names = modal_names(self._plan.task.plant)
+        told = values.keys()
+        return Identified(
+            plant=replace(self._plan.task.plant, **values),
+            estimates=self.estimates,
+            not_identifiable={
+                name: "the swings after the moves are too small"
+                for name in names
+                if name not in told
+            },
+            parts=tuple(self._parts),
+            left_out={},
+            warnings=(),
+            versions=versions(),
+        )
+
+    # The arrival
+
+    def _motion(self, move: Executed, plant: Plant) -> JudgedMotion:
+        """An executed move on a plant."""
+        start, target, duration = move.move
+        task = replace(
+            self._plan.task.certain,
+            plant=plant, start=start, target=target, duration=duration, final=None,
+        )  # fmt: skip
+        return JudgedMotion.of_profile(task, move.profile, move.coefficients)
+
+    @cached_property
+    def _told(self) -> ComplexArray:
+        """What the plant with what is changed says of the set points of each move."""
+        return self._told_by(self.plant)
+
+    def _told_by(self, plant: Plant) -> ComplexArray:
+        """What a plant says of the set points of each move (moves, modes)."""
+        modes = TipModes(plant, self._plan.task.target)
+        states = [self._motion(move, plant).arrival[0] for move in self.history.moves]
+        return np.stack([modes.amplitudes(state) for state in states])
+
+    @lru_cache(maxsize=4)  # noqa: B019  # it lives as long as the evidence
+    def seen_share(self, plant: Plant) -> float | None:
+        """How much of a plant's swing the tip shows during the move; None where it is not seen.
+
+        1 where the swing is what the plant makes of the joint's motion.
+        """
+        if self.by_joint:
+            return 1.0
+        recordings = [one.recording for one in self._read]
+        motion = self._motion(self.history.moves[-1], plant)
+        seen = [tip_share(motion, recording) for recording in recordings]
+        known = [share for share in seen if share is not None]
+        return float(np.median(known)) if known else None
+
+    @cached_property
+    def _swings(self) -> list[ComplexArray]:
+        """What was measured of each move (recordings, modes)."""
+        return [
+            np.array([[s.complex_amplitude for s in one.swings] for one in move.measured])
+            for move in self.history.moves
+        ]
+
+    @cached_property
+    def _left(self) -> ComplexArray:
+        """The mean of what each move left (moves, modes)."""
+        return np.stack([swings.mean(axis=0) for swings in self._swings])
+
+    @cached_property
+    def _wanted(self) -> ComplexArray:
+        """The swing at arrival that was asked for, of each mode."""
+        wanted = self.history.wanted
+        if wanted is None:
+            return np.zeros(len(self.modes.values), complex)
+        return self.modes.amplitudes([*wanted.W, *wanted.dW])
+
+    @cached_property
+    def _of_one(self) -> Array:
+        """Standard deviation of what one recording of each move shows, of each mode: its noise."""
+        noise = [
+            [[s.deviation for s in one.swings] for one in m.measured] for m in self.history.moves
+        ]
+        return np.stack([np.sqrt((np.array(each) ** 2).mean(axis=0)) for each in noise])
+
+    @cached_property
+    def _scatter(self) -> Array | None:
+        """The same from recording to recording of one move, by mode; None where each has one."""
+        repeated = [swings for swings in self._swings if len(swings) > 1]
+        if not repeated:
+            return None
+        squares = sum((np.abs(s - s.mean(axis=0)) ** 2).sum(axis=0) for s in repeated)
+        freedom = 2 * sum(len(s) - 1 for s in repeated)
+        return np.sqrt(squares / freedom)
+
+    @cached_property
+    def _noise(self) -> Array:
+        """Standard deviation of each move's mean, by mode (moves, modes)."""
+        counts = np.array([len(swings) for swings in self._swings])[:, None]
+        single = self._of_one if self._scatter is None else np.hypot(self._of_one, self._scatter)
+        return single / np.sqrt(counts)
+
+    @cached_property
+    def _size(self) -> float:
+        """The tip's largest displacement from the joint during the last move [m]."""
+        times = np.linspace(0, self._plan.task.duration, 200)
+        return float(np.abs(self._plan.sampled(times).tips).max())
+
+    @cached_property
+    def maps(self) -> list[ArrivalMap]:
+        """How each mode swings at arrival by what the plant says of set points."""
+        share = self.seen_share(self.plant)
+        # what earlier moves left by the joint was computed with another frequency
+        rows = slice(-1, None) if self.by_joint else slice(None)
+        told, left, noise = self._told[rows], self._left[rows], self._noise[rows]
+        return [
+            map_of(told[:, k], left[:, k], noise[:, k], self._size, share)
+            for k in range(len(self.modes.values))
+        ]
+
+    @cached_property
+    def _again(self) -> ComplexArray:
+        """What the last move would leave if it were executed again, beside what was wanted."""
+        return np.array([m.swing(t) for m, t in zip(self.maps, self._told[-1])]) - self._wanted
+
+    @cached_property
+    def step(self) -> float:
+        """Share of the correction that is worth making: 0 where what is left may be noise."""
+        left = np.abs(self._again)
+        unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
+        if not self.changed and left.sum() <= self.floor:
+            return 0.0
+        power = float((left**2).sum())
+        return power / (power + 2 * float((unsure**2).sum()))
+
+    def told_next(self, step: float) -> ComplexArray:
+        """What the plant is to say of the next set points, by mode."""
+        aim = self._wanted + (1 - step) * self._again
+        return np.array([m.told_for(swing) for m, swing in zip(self.maps, aim)])
+
+    def at_most(self, told: ComplexArray) -> float:
+        """What the next move leaves at most, in 95 of 100 cases."""
+        many = 2.0  # deviations
+        aimed = np.abs([m.swing(t) - w for m, t, w in zip(self.maps, told, self._wanted)])
+        unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, told)])
+        return float((aimed + many * unsure).sum()) + self.floor
+
+    @property
+    def left(self) -> float:
+        """What swung at arrival of the last move, of all modes: the mean of its recordings."""
+        return float(np.abs(self._swings[-1]).sum(axis=1).mean())
+
+    @cached_property
+    def _frequency_share(self) -> ComplexArray:
+        """What of that follows from the parameters that are changed, by mode."""
+        if not self.changed:
+            return np.zeros(len(self.modes.values), complex)
+        before = self._motion(self.history.moves[-1], self._plan.task.plant)
+        modes = TipModes(self._plan.task.plant, self._plan.task.target)
+        told_before = modes.amplitudes(before.arrival[0])
+        return np.array([m.share for m in self.maps]) * (self._told[-1] - told_before)
+
+    @property
+    def by_frequency(self) -> float:
+        """Size of the same."""
+        return float(np.abs(self._frequency_share).sum())
+
+    @property
+    def repeatable(self) -> float:
+        """What the machine leaves beside that, and beside what was wanted."""
+        rest = self._left[-1] - self._frequency_share - self._wanted
+        return float(np.abs(rest).sum())
+
+    @property
+    def scatter(self) -> float | None:
+        """Standard deviation of what is left from recording to recording, of all modes."""
+        return None if self._scatter is None else float(np.sqrt(2) * self._scatter.sum())
+
+    @property
+    def floor(self) -> float:
+        """What no plan takes away: twice the deviation of one move."""
+        single = self._of_one[-1]
+        if self._scatter is not None:
+            single = np.hypot(single, self._scatter)
+        return 2 * float(single.sum())
+
+    @property
+    def beyond(self) -> float:
+        """What moves the tip beside its modes, and what a torque does not tell [m]."""
+        return self._unseen + max(one.after.other for one in self._read)
+
+    @cached_property
+    def _unseen(self) -> float:
+        """What a torque's frequency does not tell: twice the deviation that it leaves [m].
+
+        0 where a tip was recorded.
+        """
+        if not self.by_joint:
+            return 0.0
+        largest = 0.0
+        for estimate in self.estimates:
+            deviation = (estimate.high - estimate.low) / 4
+            if not is_frequency(self.plant, estimate.parameter):
+                continue
+            value = getattr(self.plant, estimate.parameter) + deviation
+            told = self._told_by(replace(self.plant, **{estimate.parameter: value}))[-1]
+            largest = max(largest, 2 * float(np.abs(told - self._told[-1]).sum()))
+        return largest
+
+    @property
+    def doubts(self) -> list[str]:
+        """Whether moves repeat."""
+        most = 0.5  # share of what is left, by which moves may differ
+        if self.scatter is None or self.scatter <= most * self.left:
+            return []
+        sizes = [f"{1e3 * float(s):.3g}" for s in np.abs(self._swings[-1]).sum(axis=1)]
+        return [
+            f"warning: the moves do not repeat: they leave {', '.join(sizes)} mm; record more of "
+            "them, or make a robust plan, by --error"
+        ]

@@ -1,0 +1,321 @@
+"""Where in a recording the move of a plan begins: found by the joint, the force or the tip.
+
+What was recorded is compared with what the plan says of it, at every place of the recording: the
+joint's angle with its path, the torque with what acceleration, swing and friction take, a tip's
+displacement with the path and the swing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.machine.identify.identified import is_frequency
+from quietarm.machine.recordings.recording import Recording
+from quietarm.models.joint_motion import LINEAR
+from quietarm.ocp.judged_motion import JudgedMotion
+from quietarm.ocp.planning.plan import Plan
+
+Array = NDArray[np.float64]
+_POINTS = 200
+"""In which the move is compared with the plan."""
+_BEFORE = 0.1
+"""Share of the duration that is compared before the start, where the joint rests."""
+_LEAST_MET = {"angle": 0.99, "torque": 0.7, "tip": 0.7, "acceleration": 0.5}
+"""Share of a signal's power during the move that the plan explains, or it is another move."""
+_SAME_WAY = 0.03
+"""Share by which the recorded way of a joint may differ from the plan's."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a move begins in a recording.
+
+    Attributes
+    ----------
+    time : float
+        In the recording's own time [s].
+    signal : str
+        By which it was found.
+    explained : float
+        Share of that signal's power during the move that follows from the plan.
+    """
+
+    time: float
+    signal: str
+    explained: float
+
+
+def find_start(plan: Plan, recording: Recording) -> Start:
+    """The start of a plan's move in a recording of it.
+
+    Raises
+    ------
+    ValueError
+        When the recording is shorter than the move, of another move, or by another clock.
+    """
+    duration = plan.task.duration
+    lasts = float(np.ptp(recording.time))
+    if lasts < duration:
+        raise ValueError(
+            f"{recording.name}: it lasts {lasts:.4g} s, and the move of the plan {duration:.4g} s; "
+            "record from its start until two periods after its end, or give the time's unit by "
+            "--units time:ms"
+        )
+    signal = next(name for name in _LEAST_MET if name in recording.measured)
+    values = recording.measured[signal].reshape(len(recording.time), -1)[:, 0]
+    search, lag, explained = _best_search(plan, recording.time, values, signal)
+    if explained < _LEAST_MET[signal]:
+        search.refuse_other_clock(recording.name, explained)
+        raise ValueError(
+            f"{recording.name}: it is of another move: of its {_WORDS[signal]} the plan explains "
+            f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
+        )
+    lag, explained = search.refined(lag)
+    search.refuse_stretched(recording.name, lag, explained)
+    if signal == "angle":
+        _check_way(plan, recording.name, float(search.sizes(lag)[0]))
+    return Start(lag, signal, explained)
+
+
+def _best_search(
+    plan: Plan, time: Array, values: Array, signal: str
+) -> tuple[_Search, float, float]:
+    """The search by the plant's frequencies, or by others that meet a tip's swing better."""
+    enough = 0.98  # share that is explained, from which on no other frequency is tried
+    found = list[tuple[float, float, _Search]]()
+    for factor in (1.0, *np.geomspace(0.7, 1.4, 21)):
+        motion = _with_frequencies(plan, float(factor))
+        if motion is None:
+            break
+        search = _Search(time, values, _courses(motion, signal), plan.task.duration)
+        lag, explained = search.best(1.0)
+        found.append((explained, lag, search))
+        if signal in ("angle", "torque") or explained > enough:
+            break
+    explained, lag, search = max(found, key=lambda each: each[0])
+    return search, lag, explained
+
+
+def _with_frequencies(plan: Plan, factor: float) -> JudgedMotion | None:
+    """The motion of a plan whose plant swings so much faster; None where it has no frequency."""
+    if factor == 1:
+        return plan.candidate
+    plant = plan.task.plant
+    rates = {name: value for name, value in plant.measured.items() if is_frequency(plant, name)}
+    if not rates:
+        return None
+    faster = replace(plant, **{name: factor * value for name, value in rates.items()})
+    task = replace(plan.task.certain, plant=faster)
+    return JudgedMotion.of_profile(task, plan.profile, plan.coefficients)
+
+
+def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
+    """That a joint leaves the plan's path by more than a servo does, in words; empty where not.
+
+    It may be another plan's move.
+    """
+    much = 3e-5  # share of the way's power
+    if start.signal != "angle" or 1 - start.explained < much:
+        return ""
+    assert recording.angle is not None
+    rows = recording.rows(start.time, start.time + plan.task.duration)
+    size = float(recording.angle[rows].std()) * (1 - start.explained) ** 0.5
+    linear = plan.task.plant.joint == LINEAR
+    words = f"{1e3 * size:.2g} mm" if linear else f"{np.degrees(size):.2g} deg"
+    return (
+        f"warning: {recording.name}: the joint is {words} (rms) off the plan's path: is it the "
+        "recording of this plan?"
+    )
+
+
+def refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
+    """ValueError where a recording is of an earlier move of a plan's history, not of the plan."""
+    far_better = 0.2  # times what the plan leaves unexplained
+    if start.signal not in ("angle", "tip") or plan.learned is None:
+        return
+    values = recording.measured[start.signal].reshape(len(recording.time), -1)[:, 0]
+    for number, move in enumerate(plan.learned.moves, start=1):
+        task = replace(plan.task.certain, duration=move.move[2], final=None)
+        motion = JudgedMotion.of_profile(task, move.profile, move.coefficients)
+        if move.coefficients == plan.coefficients:
+            continue
+        search = _Search(recording.time, values, _courses(motion, start.signal), task.duration)
+        _, explained = search.refined(start.time)
+        if 1 - explained < far_better * (1 - start.explained):
+            raise ValueError(
+                f"{recording.name}: it is of move {number}, which an earlier plan made, and not of "
+                "this plan; give the recording of this plan's move"
+            )
+
+
+def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
+    """How much of the plant's swing a tip shows during the move, by a motion with its frequency.
+
+    None where the tip was not seen during the move, or follows another course.
+    """
+    enough = 0.99
+    if recording.tip is None:
+        return None
+    values = recording.tip.reshape(len(recording.time), -1)[:, 0]
+    search = _Search(recording.time, values, _courses(motion, "tip"), motion.task.duration)
+    lag, explained = search.best(1.0)
+    if explained < enough:
+        return None
+    lag, _ = search.refined(lag)
+    return float(search.sizes(lag)[1])
+
+
+_WORDS = {"angle": "joint", "torque": "torque", "tip": "tip", "acceleration": "accelerometer"}
+
+
+def _courses(motion: JudgedMotion, signal: str) -> Sequence[Array]:
+    """What a signal consists of during the move, each with an unknown size: rows of `_POINTS`."""
+    task = motion.task
+    times = task.duration * np.linspace(-_BEFORE, 1, _POINTS)
+    moving = times >= 0
+    sampled = motion.sample(times[moving])
+    place, speed, acceleration = sampled.joint.T
+    tip = sampled.tips[:, 0]
+    # of the tip from the joint; quicker to differentiate than to ask each plant of its own
+    tip_acceleration = np.gradient(np.gradient(tip, times[moving]), times[moving])
+    courses = {
+        "angle": [place - task.start],
+        "torque": [acceleration, tip_acceleration, speed, np.sign(np.round(speed, 6))],
+        "tip": [place - task.start, tip],
+        "acceleration": [acceleration, tip_acceleration],
+    }
+    resting = np.count_nonzero(~moving)
+    return [np.concatenate([np.zeros(resting), course]) for course in courses[signal]]
+
+
+class _Search:
+    """The places of a recording, and how much of its signal a plan explains there."""
+
+    def __init__(
+        self, time: Array, values: Array, courses: Sequence[Array], duration: float
+    ) -> None:
+        self._time = time
+        self._values = values
+        self._duration = duration
+        basis = np.column_stack([np.ones(_POINTS), *courses])
+        self._norms = np.linalg.norm(basis, axis=0)
+        self._spread = basis[:, 1:].std(axis=0)
+        self._courses, self._triangle = np.linalg.qr(basis / self._norms)
+        self._at = duration * np.linspace(-_BEFORE, 1, _POINTS)
+
+    def best(self, stretch: float) -> tuple[float, float]:
+        """The place that is met best [s], and the share that is explained there."""
+        step = stretch * float(self._at[1] - self._at[0])
+        pad = round(_BEFORE * self._duration * stretch / step) + 2
+        count = int(np.ptp(self._time) / step) + 1
+        even = self._time[0] + step * np.arange(-pad, count)
+        values = np.interp(even, self._time, _averaged(self._time, self._values, step))
+        if len(values) < _POINTS:
+            return float(self._time[0]), 0.0
+        windows = np.lib.stride_tricks.sliding_window_view(values, _POINTS)
+        explained = self._explained(windows)
+        place = int(explained.argmax())
+        return float(even[place]) - stretch * float(self._at[0]), float(explained[place])
+
+    def _explained(self, windows: Array) -> Array:
+        """Share of the power of each window, its mean not counted; 0 where it goes the other way.
+
+        It does so where the course that explains most has the other sign.
+        """
+        centred = windows - windows.mean(axis=-1, keepdims=True)
+        power = (centred**2).sum(axis=-1)
+        least = 1e-6 * float(power.max()) + 1e-300
+        amplitudes = centred @ self._courses
+        explained = (amplitudes**2).sum(axis=-1) / np.maximum(power, least)
+        sizes = self._sizes(amplitudes) * self._spread
+        largest = np.abs(sizes).argmax(axis=-1)
+        forward = np.take_along_axis(sizes, largest[..., None], axis=-1)[..., 0] > 0
+        return np.where(forward, explained, 0.0)
+
+    def _sizes(self, amplitudes: Array) -> Array:
+        """The sizes of the courses (..., courses), by amplitudes of the orthogonal ones."""
+        scaled = np.linalg.solve(self._triangle, np.moveaxis(amplitudes, -1, 0))
+        return np.moveaxis(scaled, 0, -1)[..., 1:] / self._norms[1:]
+
+    def _window(self, lag: float, stretch: float) -> Array:
+        return np.interp(lag + stretch * self._at, self._time, self._values)
+
+    def refined(self, lag: float) -> tuple[float, float]:
+        """The place [s] between samples, near one, and the share that is explained there."""
+        step = float(self._at[1] - self._at[0])
+        found: Any = _least(lambda x: self._unexplained(lag + step * x[0], 1.0), 1)
+        return lag + step * float(found.x[0]), 1 - float(found.fun)
+
+    def refuse_stretched(self, name: str, lag: float, explained: float) -> None:
+        """ValueError where the move is met far better by a clock that is off by some per cent."""
+        step = float(self._at[1] - self._at[0])
+        per_cent = 1e-2
+        far_better = 0.1
+        least = 1e-3  # of what is unexplained, from which on a clock is doubted
+        if 1 - explained < least:
+            return
+        found: Any = _least(lambda x: self._unexplained(lag + step * x[0], 1 + per_cent * x[1]), 2)
+        stretch = 1 + per_cent * float(found.x[1])
+        if abs(stretch - 1) > per_cent and found.fun < min(far_better * (1 - explained), least):
+            raise ValueError(_other_clock(name, stretch, self._duration))
+
+    def _unexplained(self, lag: float, stretch: float) -> float:
+        return 1 - float(self._explained(self._window(lag, stretch)[None])[0])
+
+    def sizes(self, lag: float) -> Array:
+        """The size of each course at a place, over what the plan says."""
+        window = self._window(lag, 1.0)
+        return self._sizes((window - window.mean()) @ self._courses)
+
+    def refuse_other_clock(self, name: str, explained: float) -> None:
+        """ValueError where the move is met by a clock that runs faster or slower."""
+        met = 0.98
+        longest = float(np.ptp(self._time)) / self._duration
+        stretches = [s for s in np.geomspace(0.2, 5, 65) if s < longest]
+        found = [(self.best(s)[1], s) for s in stretches]
+        best, stretch = max(found, default=(0.0, 1.0))
+        if best > met and best > explained + 0.05:
+            raise ValueError(_other_clock(name, float(stretch), self._duration))
+
+
+def _least(function: Callable[[Array], float], unknowns: int) -> Any:
+    """The least of a function near zeros, by a method that needs no derivatives."""
+    from scipy.optimize import minimize  # not at the top: it takes long to load
+
+    options = {"xatol": 1e-4, "fatol": 1e-12}
+    return minimize(function, np.zeros(unknowns), method="Nelder-Mead", options=options)
+
+
+def _averaged(time: Array, values: Array, step: float) -> Array:
+    """Means over about a step, where samples are denser: noise is not taken for a move."""
+    from scipy.ndimage import uniform_filter1d  # not at the top: it takes long to load
+
+    size = max(1, round(step / float(np.median(np.diff(time)))))
+    smoothed: Array = uniform_filter1d(values, size, mode="nearest")
+    return smoothed
+
+
+def _other_clock(name: str, stretch: float, duration: float) -> str:
+    return (
+        f"{name}: its clock is off: the move takes {stretch * duration:.4g} s there, and "
+        f"{duration:.4g} s in the plan; give the samples per second by --rate, or the time's unit "
+        "by --units"
+    )
+
+
+def _check_way(plan: Plan, name: str, share: float) -> None:
+    """Refuse a joint that moved another way than the plan's."""
+    if abs(share - 1) <= _SAME_WAY:
+        return
+    linear = plan.task.plant.joint == LINEAR
+    size, unit = (1e3, "mm") if linear else (180 / np.pi, "deg")
+    span = size * plan.task.span
+    raise ValueError(
+        f"{name}: it is of another move: its joint goes {share * span:.4g} {unit}, and that of the "
+        f"plan {span:.4g}; give the recording of this plan's move, or its unit by --units"
+    )

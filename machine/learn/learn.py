@@ -1,0 +1,142 @@
+"""`learn`: from a plan and recordings of its executed move to the next plan, which leaves less.
+
+First the model: frequency and damping, where recordings of the swing differ from it clearly. Then
+the arrival state: what the machine leaves of a move is compared with what the corrected model says
+of its set points, over all moves that the plan was learned from (`arrival_map`), and the next plan
+is told to arrive in the state that makes up for the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from quietarm.machine.identify.identified import is_frequency
+from quietarm.machine.learn.evidence import ReadMove, evidence_of, is_by_joint
+from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_earlier
+from quietarm.machine.learn.learning import Learning
+from quietarm.machine.learn.next_plan import plan_again
+from quietarm.machine.learn.read_force import read_torque, swing_by_joint
+from quietarm.machine.learn.read_swing import check_length, read_swing
+from quietarm.machine.recordings.mending import without_glitches
+from quietarm.machine.recordings.recording import Recording, checked_recordings
+from quietarm.ocp.checks import positive, takes
+from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.solvers.solver import Solver
+from quietarm.ocp.solvers.sqp import Sqp
+from quietarm.ocp.uncertainty import with_values
+
+
+@takes(plan=Plan, solver=Solver)
+def learn(
+    plan: Plan,
+    recordings: Sequence[Recording],
+    *,
+    dearer: float = 0.02,
+    solver: Solver = Sqp(),
+) -> Learning:
+    """Learn from recordings of a plan's executed move, and plan the next one.
+
+    Each recording is one execution of the plan, from its start until two periods after arrival or
+    longer: of a tip or an accelerometer, or of the joint's angle and its torque. The start is found
+    in it. What earlier plans left stands in the plan, if `learn` made it.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan that was executed.
+    recordings : sequence of Recording
+        Of its execution, one or several.
+    dearer : float
+        Share by which the next plan may take more energy than this one.
+    solver : Solver
+        As for `plan_move`.
+
+    Returns
+    -------
+    Learning
+        What was left, what changes, and the next plan.
+
+    Raises
+    ------
+    ValueError
+        When a recording is too short, of another move or by another clock; when the plan has
+        nothing that could change.
+    SolverFailedError
+        When no motion within the limits makes up for what was left.
+    """
+    dearer = positive("dearer", dearer)
+    _check_plan(plan)
+    recordings, notes = without_glitches(checked_recordings(recordings))
+    read = [_read(plan, recording) for recording in recordings]
+    evidence = evidence_of(plan, read)
+    if any(one.by_joint for one in read):  # once more, by the frequency that all moves tell
+        read = [one.on(evidence.plant, plan.task.target) for one in read]
+        evidence = evidence_of(plan, read)
+    history = evidence.history
+    step = evidence.step
+    told = evidence.told_next(step)
+    again = plan.with_entries(learned=history)
+    if step:
+        task = replace(plan.task, plant=evidence.plant, final=evidence.modes.state(told))
+        again = plan_again(plan, task, dearer, solver).with_entries(learned=history)
+    notes += [note for one in read for note in (one.doubt, *one.after.notes) if note]
+    return Learning(
+        plan=again,
+        left=evidence.left,
+        by_frequency=evidence.by_frequency,
+        repeatable=evidence.repeatable,
+        scatter=evidence.scatter,
+        floor=evidence.floor + evidence.beyond,
+        next_at_most=evidence.at_most(told) + evidence.beyond,
+        changed=evidence.changed,
+        estimates=evidence.estimates,
+        start={one.recording.name: one.start for one in read},
+        step=step,
+        machine=evidence.machine(),
+        by_joint=evidence.by_joint,
+        notes=(*notes, *evidence.doubts),
+    )
+
+
+def _check_plan(plan: Plan) -> None:
+    """ValueError where nothing of a plan could be learned."""
+    plant = plan.task.plant
+    if plan.profile.size == 0:
+        raise ValueError(
+            f"the plan's profile, {plan.profile.label}, has one motion alone, and nothing to "
+            "change; learn from a plan of quietarm plan"
+        )
+    if plant.has_path:
+        raise ValueError(
+            f"{plant.name} moves along a path, and learn takes plants of one joint; correct its "
+            "plan by the whole equations, plan --in-full"
+        )
+    if not any(is_frequency(plant, name) for name in plant.measured):
+        raise ValueError(
+            f"{plant.name} has no parameter that is the frequency of a mode, which recordings "
+            "tell; declare it by qa.parameter(..., kind='frequency')"
+        )
+
+
+def _read(plan: Plan, recording: Recording) -> ReadMove:
+    """The start and the swing of one recording."""
+    task = plan.task
+    found = find_start(plan, recording)
+    refuse_earlier(plan, recording, found)
+    doubt = off_the_path(plan, recording, found)
+    start = found.time
+    arrival = start + task.duration
+    check_length(recording, arrival, task.plant, task.target)
+    if not is_by_joint(recording):
+        after = read_swing(recording, arrival, task.plant, task.target)
+        return ReadMove(recording, start, arrival, after, doubt)
+    if recording.angle is None:
+        raise ValueError(
+            f"{recording.name}: a torque alone does not tell how the tip swings; name the column "
+            "of the joint by --angle, or that of a tip by --tip"
+        )
+    part = read_torque(recording, start, arrival, task.plant)
+    plant = with_values(task.plant, part.values)
+    after = swing_by_joint(recording, part, arrival, plant, task.target)
+    return ReadMove(recording, start, arrival, after, doubt)

@@ -1,0 +1,103 @@
+"""`quietarm learn`: the next plan, by what the machine left of the last one."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import click
+
+from quietarm.machine.identify import Identified
+from quietarm.machine.learn import learn as learning
+from quietarm.machine.recordings.read_recording import notes_in_words
+from quietarm.ocp import Plan
+from quietarm.ocp.files import check_writable
+from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.options import SOLVER, busy, command, option
+from quietarm.studies.cli.outputs import PICTURE, answer_files, finish, output_option
+from quietarm.studies.cli.quantities import parse_share
+from quietarm.studies.cli.recording_options import RECORDED, read_recordings
+from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.views import pictures
+from quietarm.views.report.learning_rows import learning_rows, learning_sentence
+
+
+def _machine_file(text: str) -> Path:
+    path = Path(text)
+    if path.suffix.lower() != ".json":
+        raise ValueError(f"{text} is no name of a machine's file; give one that ends with .json")
+    return check_writable(path)
+
+
+@command(
+    click.Argument(["plan"], type=INPUT, metavar="PLAN"),
+    click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING..."),
+    *RECORDED,
+    option("--dearer", type=Parsed("share", partial(parse_share, name="--dearer")), default="2%",
+           metavar="SHARE", help="By how much more energy the next plan may take."),
+    option("--machine", type=Parsed("file", _machine_file), metavar="FILE",
+           help="File of the machine that gets what was learned of its frequency, as identify "
+           "writes it: a PLANT for other moves."),
+    *SOLVER,
+    output_option({".json": "the next plan, which knows what it was learned from",
+                   ".csv": "its path at 1 kHz", PICTURE: "a picture of it"}, formats=["plan"]),
+)  # fmt: skip
+def learn(given: Given) -> None:
+    """Plan the next move of PLAN's task, by each RECORDING of the executed PLAN.
+
+    The move's start is found in the recording, which lasts until two periods after arrival or
+    longer. The next plan makes up for what was left, and knows it: learn again from its recording.
+
+    \b
+    Examples:
+      quietarm learn plan.json run.csv --tip tool_mm --angle axis_mm --output next.json
+      quietarm learn next.json run2.csv run3.csv --tip tool_mm --output third.json
+      quietarm learn plan.json run.csv --angle axis_mm --torque force_N --output next.json
+    """  # noqa: D301  # \b is click's: do not rewrap
+    _refuse_the_plan_itself(given)
+    plan = Plan.load(given.plan)
+    known = _known_machine(given.machine, plan)
+    read = read_recordings(given, given.files, plan.task.plant)
+    with busy("learning"):
+        learned = learning(
+            plan,
+            [one.recording for one in read],
+            dearer=given.dearer,
+            solver=given.read_solver(),
+        )
+    files = answer_files(given.output, partial(pictures.motion_figure, learned.plan), learned.plan)
+    if given.machine:
+        machine = learned.machine if known is None else learned.machine_from(known)
+        files.append((given.machine, machine.save))
+    finish(
+        files,
+        learning_sentence(learned),
+        learning_rows(plan, learned),
+        *learned.notes,
+        *notes_in_words(read),
+    )
+
+
+def _refuse_the_plan_itself(given: Given) -> None:
+    """Refuse to write over what is read: the plan that was executed, and its recordings."""
+    read = {path.resolve(): path for path in (given.plan, *given.files)}
+    written = [*given.output, *([given.machine] if given.machine else [])]
+    for path in written:
+        if path.resolve() in read:
+            raise ValueError(
+                f"{path} is what the next plan is learned from, and would be lost; give another "
+                "name"
+            )
+
+
+def _known_machine(path: Path | None, plan: Plan) -> Identified | None:
+    """The machine of a file that is there already; ValueError where it is another one."""
+    if path is None or not path.exists():
+        return None
+    machine = Identified.load(path)
+    if machine.plant.name != plan.task.plant.name:
+        raise ValueError(
+            f"{path} is a machine of {machine.plant.name}, and the plan one of "
+            f"{plan.task.plant.name}; give the file of this machine, or another name"
+        )
+    return machine

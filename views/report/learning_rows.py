@@ -1,0 +1,92 @@
+"""What was learned from executed moves, on the screen: a sentence first, then what it rests on."""
+
+from __future__ import annotations
+
+from math import pi
+
+from quietarm.machine.identify.identified import is_frequency
+from quietarm.machine.learn import Learning
+from quietarm.models import Plant
+from quietarm.ocp import Plan
+from quietarm.views.report.words import counted
+
+Row = tuple[str, str]
+
+
+def learning_sentence(learned: Learning) -> str:
+    """What was left, what of it changes, what the next move leaves, and what none takes away."""
+    plant = learned.plan.task.plant
+    left = _with_unit(learned.left, plant)
+    floor = _number(learned.floor, plant)
+    whose = (
+        "by friction, noise and what a torque does not tell"
+        if learned.by_joint
+        else ("by friction and noise")
+    )
+    if learned.is_done:
+        return (
+            f"nothing more to learn: left {left}, floor {whose} {floor}; the next move is this one"
+        )
+    share = ""
+    changed = _changed(learned)
+    if changed:
+        share = (
+            f", of which {_number(learned.by_frequency, plant)} by {changed} and "
+            f"{_number(learned.repeatable, plant)} repeatable"
+        )
+    return (
+        f"left {left}{share}; next move: at most {_with_unit(learned.next_at_most, plant)}; "
+        f"floor {whose} {floor}"
+    )
+
+
+def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
+    """What the sentence rests on: starts, intervals, scatter, the next plan beside this one."""
+    plant = plan.task.plant
+    moves = learned.plan.learned.moves if learned.plan.learned else ()
+    recordings = sum(len(move.measured) for move in moves)
+    rows = [
+        ("learned from", f"{counted(len(moves), 'move')}, {counted(recordings, 'recording')}"),
+        *(
+            (name, f"starts at {round(time, 4) + 0.0:.4f} s of the recording")
+            for name, time in learned.start.items()
+        ),
+    ]
+    for estimate in learned.estimates:
+        size, unit = (2 * pi, " Hz") if is_frequency(plant, estimate.parameter) else (1.0, "")
+        low, high = estimate.low / size, estimate.high / size
+        rows.append(
+            (
+                estimate.parameter,
+                f"{estimate.value / size:.5g}{unit} after the moves, within {low:.5g} to "
+                f"{high:.5g}{unit} (95 %)",
+            )
+        )
+    if learned.scatter is not None:
+        rows.append(("scatter", f"{_with_unit(learned.scatter, plant)} from move to move"))
+    if not learned.is_done:
+        more = 100 * (learned.plan.energy / plan.energy - 1)
+        rows.append(("step", f"{learned.step:.0%} of the correction"))
+        rows.append(("energy (F2)", f"{learned.plan.energy:.6g} J ({more:+.1f} %)"))
+    return rows
+
+
+def _changed(learned: Learning) -> str:
+    """The frequencies that are changed, in words; empty where none is."""
+    plant = learned.plan.task.plant
+    words = [
+        f"{new / (2 * pi):.4g} Hz, model {model / (2 * pi):.4g}"
+        for name, (model, new) in learned.changed.items()
+        if is_frequency(plant, name)
+    ]
+    return f"the frequency ({'; '.join(words)})" if words else ""
+
+
+def _number(length: float, plant: Plant) -> str:
+    """A displacement of the tip in mm, of one that turns in degrees: two digits."""
+    value = 1e3 * length if plant.tip_unit == "m" else 180 / pi * length
+    return f"{value:.3g}" if value >= 1 else f"{value:.2g}"
+
+
+def _with_unit(length: float, plant: Plant) -> str:
+    return f"{_number(length, plant)} {'mm' if plant.tip_unit == 'm' else 'deg'}"
