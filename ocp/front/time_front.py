@@ -19,7 +19,6 @@ from quietarm.ocp.checks import NotNegative, Positive, positive, takes, whole
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
-from quietarm.ocp.front.tradeoff import Progress, no_report
 from quietarm.ocp.planning.fastest import fastest_move
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
 from quietarm.ocp.planning.plan_move import plan_move
@@ -29,6 +28,7 @@ from quietarm.ocp.saved import Answer
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.told_progress import Progress, no_report
 
 TIME_AND_ENERGY = ("time", "energy")
 """The objectives of such a front."""

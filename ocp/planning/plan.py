@@ -41,7 +41,6 @@ STATED_CYCLE = "stated_cycle"
 """Entry of a file: the figures of a plan's cycles."""
 
 
-
 @dataclass(frozen=True)
 class Plan(MotionAnswer):
     """One motion of one task: its coefficients and how they were found.

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.modes import sag_at
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
-from quietarm.models.robot.on_path.path_tables import reach, tables_of
+from quietarm.models.robot.on_path.path_tables import range_of_tables, tables_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 
 _PLACES = 129
@@ -45,7 +45,7 @@ class TipWay:
         x = ca.SX.sym("x", dynamics.size)
         rotation, origin = dynamics.place(robot.tip_place, x)
         frame = ca.Function("frame", [x], [ca.densify(ca.horzcat(rotation, origin))])
-        places = np.linspace(*reach(), _PLACES)
+        places = np.linspace(*range_of_tables(), _PLACES)
         frames = list[Array]()
         sag = None
         for q in path.extended(places):
