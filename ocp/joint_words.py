@@ -30,7 +30,7 @@ def spans_in_words(candidates: Sequence[JudgedMotion], place: str) -> list[str]:
     A figure that one of the motions lacks is left out.
     """
     words = list[str]()
-    for figure in further_figures(place):
+    for figure in further_figures(place, candidates[0].task) if candidates else []:
         known = [motion for motion in candidates if figure.name in motion.figures]
         if known and len(known) == len(candidates):
             by_size = sorted(known, key=lambda motion: motion.figures[figure.name])

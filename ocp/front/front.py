@@ -191,7 +191,7 @@ class Front(Answer):
 
         NaN where the front has no such point, or its motion no such figure.
         """
-        further = further_figures(place)
+        further = further_figures(place, self.task)
         point = self.cheapest_within(residual) if further else None
         figures = {} if point is None else self.judged(point).figures
         plant = self.task.plant

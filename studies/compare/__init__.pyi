@@ -1,5 +1,6 @@
 from .baselines import BASELINES as BASELINES
 from .baselines import baseline as baseline
+from .baselines import fastest_baseline as fastest_baseline
 from .compared_motions import ComparedMotion as ComparedMotion
 from .compared_motions import judge_motion as judge_motion
 from .front_comparison import Comparison as Comparison

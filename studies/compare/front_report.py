@@ -107,7 +107,7 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
         f"{figure.label_on(front.task.plant)} [{figure.unit_on(front.task.plant) or '-'}] "
         f"within {tip_words(level, tip_unit)}": _spread_of(group, figure, level)
         for level in comparison.levels
-        for figure in further_figures(FRONT)
+        for figure in further_figures(FRONT, front.task)
     }
     return {
         "method": group.label,

@@ -47,8 +47,6 @@ from quietarm.studies.compare.compared_motions import (
 from quietarm.views import pictures
 from quietarm.views.report import Report
 from quietarm.views.report.acting_words import ranges_words
-from quietarm.views.report.report import table_in_markdown
-from quietarm.views.report.terminal import width_of_table
 from quietarm.views.report.words import (
     note_lines,
     title_of,
@@ -65,8 +63,6 @@ _WHY = "why there is none"
 """Column of a table for files; a page lists the reasons below."""
 _WINDOW = "residual window [s]"
 _DURATION = "duration [s]"
-WIDTH = 100
-"""Letters in a line of a page's table; further columns stand in a table below it."""
 
 
 OWN = "own"
@@ -247,19 +243,6 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     return rounded.drop(columns=files_alone, errors="ignore")
 
 
-def in_width(table: pd.DataFrame, width: int = WIDTH) -> list[pd.DataFrame]:
-    """Return a table as several that fit into a width, each with the first column."""
-    first, *columns = map(str, table.columns)
-    parts = list[list[str]]()
-    for column in columns:
-        wider = [*(parts[-1] if parts else []), column]
-        if parts and width_of_table(table_in_markdown(table.filter([first, *wider]))) <= width:
-            parts[-1] = wider
-        else:
-            parts.append([column])
-    return [table.filter([first, *part]) for part in parts]
-
-
 def _shortened(heading: str, others: Iterable[str]) -> str:
     """The heading of a peak without that word, unless another figure has what is left."""
     peak_of = heading.removeprefix("peak ")
@@ -307,11 +290,11 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
         {
             "title": title_of(task),
             "answer": answer_of(motions, plant) if acting else "",
-            "acting": in_width(acting_table(motions, plant)) if acting else [],
+            "acting": acting_table(motions, plant) if acting else None,
             "band": acting and tip_words(acting.band, plant.tip_unit),
             "within": acting and ranges_words(acting.ranges),
             "energy": task.energy.label,
-            "shown": in_width(further),
+            "shown": further,
             "remarks": [
                 *remarks(motions, unit_of_way(plant)),
                 *(_words_of_way(plant) if acting else []),

@@ -99,10 +99,11 @@ def tuned_s_curve(
     found = (_best_boxes(least, fixed, duration) for fixed in choices)
     fitting = [boxes for boxes in found if boxes is not None]
     if not fitting:
-        within = "" if duration is None else f" and within {duration:.4g} s"
+        within = "" if duration is None else f" and {duration:.4g} s"
+        remedy = "" if duration is None else "a longer duration or "
         raise ValueError(
-            f"no S-curve within the limits{within} has a time of one, two or three periods; take "
-            "zv-s-curve"
+            f"no S-curve within the limits{within} has a time of one, two or three periods; give "
+            f"{remedy}wider limits"
         )
     if duration is None:
         return _of_boxes(task.span, min(fitting, key=sum))

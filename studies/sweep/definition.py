@@ -12,7 +12,7 @@ import numpy as np
 
 from quietarm.ocp import Solver, SolveStatus, Sqp
 from quietarm.ocp.checks import listed, not_negative, positive, quoted
-from quietarm.ocp.figures import ACTS_AFTER, Figure, further_figures
+from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.limits import RESIDUAL, SWEEP, TORQUE_SPEED, quantities_of
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting, coefficient_bound
@@ -211,8 +211,6 @@ class Definition:
             "iterations": "1",
             "cold_excess": "1",
         }
-        if self.has_acting:
-            units[ACTS_AFTER] = "s"
         quantities = quantities_of(task.plant.joint, tip).values()
         units |= {quantity.peak: str(quantity.unit) for quantity in quantities}
         units |= {
@@ -252,14 +250,8 @@ class Definition:
 
     @property
     def figures(self) -> list[Figure]:
-        """Figures of a user's own that the dataset holds, without peaks, which it holds anyway."""
-        return [figure for figure in further_figures(SWEEP) if not figure.quantity]
-
-    @property
-    def has_acting(self) -> bool:
-        """Whether its moves have a time to act: a band, for errors of their plant."""
-        task = self.grid.task
-        return task.band is not None and bool(task.ranges)
+        """Further figures that the dataset holds, without peaks, which it holds anyway."""
+        return [figure for figure in further_figures(SWEEP, self.grid.task) if not figure.quantity]
 
     def difference(self, other: Definition) -> str:
         """Names of all in which two sweeps differ, and the residual window of the other."""

@@ -20,7 +20,6 @@ from quietarm.ocp import (
     plan_move,
     plan_moves,
 )
-from quietarm.ocp.figures import ACTS_AFTER
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.robustness import sensitivities_of_moves
 from quietarm.ocp.solvers.solver import NAME
@@ -159,14 +158,12 @@ def _plan_robust(definition: Definition, tasks: Sequence[PointToPoint], cold: bo
             yield {STATUS: STATES.index(status.value), SOLVED_BY: number_of_solver("")}
             continue
         guess = plan.coefficients
-        acting = {ACTS_AFTER: plan.acts_after} if definition.has_acting else {}
         peaks = {quantity.peak: plan.motion.peak(name) for name, quantity in QUANTITIES.items()}
         yield {
             STATUS: STATES.index(plan.status.value),
             COEFFICIENTS: guess,
             "energy": plan.energy,
             "residual": plan.residual,
-            **acting,
             SOLVED_BY: number_of_solver(plan.record.method),
             **peaks,
         }

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from quietarm.ocp import SolveStatus
-from quietarm.ocp.figures import ACTS_AFTER
 from quietarm.ocp.rest import is_at_rest
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
 from quietarm.studies.sweep.store import Store
@@ -93,16 +92,7 @@ def cells_along(store: Store) -> list[str]:
         f"{axis.name} [{axis.unit}]": [f"{value:.6g}" for value in axis.values],
         "energy [J]": np.where(known, [f"{value:.4g}" for value in energy.tolist()], "-"),
         f"residual [{shown}]": np.where(known, residuals, "-"),
-        **_acting_column(store),
         **figures,
         "status": [STATES[k] for k in status.tolist()],
     }
     return ["\n", *pandas.DataFrame(cells).to_string(index=False).splitlines()]
-
-
-def _acting_column(store: Store) -> dict[str, list[str]]:
-    """When the tip may act in each cell; nothing where the moves have no band."""
-    if not store.definition.has_acting:
-        return {}
-    times = store.read(ACTS_AFTER).tolist()
-    return {"acts after [s]": ["-" if np.isnan(time) else f"{time:.4g}" for time in times]}

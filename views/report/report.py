@@ -21,6 +21,7 @@ from quietarm.ocp.escapes import (
 )
 from quietarm.ocp.files import write_whole
 from quietarm.views.report.saving import File, drawing, inside
+from quietarm.views.report.table_width import width_of_table
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import counted, millimetres
 
@@ -117,6 +118,22 @@ def table_in_markdown(table: DataFrame) -> str:
     return Markdown(cells.to_markdown(index=False, floatfmt=".4g", missingval="-"))
 
 
+def tables_in_markdown(table: DataFrame, width: int = 100) -> str:
+    """A table as several below each other that fit into a width, each with the first column."""
+    if len(table.columns) < 2:
+        return ""
+    first, *columns = map(str, table.columns)
+    parts = list[list[str]]()
+    for column in columns:
+        wider = [*(parts[-1] if parts else []), column]
+        if parts and width_of_table(table_in_markdown(table.filter([first, *wider]))) <= width:
+            parts[-1] = wider
+        else:
+            parts.append([column])
+    texts = (table_in_markdown(table.filter([first, *part])) for part in parts)
+    return Markdown("\n\n".join(texts))
+
+
 def turned(table: DataFrame, names: str) -> str:
     """A table in Markdown whose columns are lines: few rows of many figures, named by a column."""
     cells = table.map(lambda cell: f"{cell:.4g}" if isinstance(cell, float) else cell)
@@ -141,8 +158,9 @@ def in_a_sentence(words: Sequence[str]) -> str:
 def _environment() -> Environment:
     environment = templates(finalize=_words)
     filters: dict[str, Any] = {
-        "table": table_in_markdown, "turned": turned, "mm": millimetres, "percents": percents,
-        "listed": in_a_sentence, "counted": counted, "code": code,
+        "table": table_in_markdown, "tables": tables_in_markdown, "turned": turned,
+        "mm": millimetres, "percents": percents, "listed": in_a_sentence, "counted": counted,
+        "code": code,
     }  # fmt: skip
     environment.filters.update(filters)
     return environment

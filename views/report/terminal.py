@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import groupby, zip_longest
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from quietarm.ocp.escapes import one_line, printable
+from quietarm.views.report.table_width import width_of_table
 
 if TYPE_CHECKING:
     from quietarm.views.report.report import Report
@@ -68,11 +69,3 @@ def _widest_table(lines: Sequence[str]) -> int:
         if is_table:
             widest = max(widest, width_of_table("\n".join(rows)))
     return widest
-
-
-def width_of_table(text: str) -> int:
-    """Return how many columns of a terminal a table of Markdown takes."""
-    heading, _, *rows = text.splitlines()
-    cells = [[cell.strip() for cell in row.split("|")[1:-1]] for row in (heading, *rows)]
-    beside = 2  # of each column: the room between it and the next
-    return sum(max(map(len, column)) + beside for column in zip_longest(*cells, fillvalue=""))

@@ -98,6 +98,13 @@ def test_plans_are_compared_with_baselines_under_errors(done, plan, cycloid):
     assert "+-8 % of frequency" in " ".join(out.split())
 
 
+def test_tables_of_fronts_fit_into_100_columns(done, files, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    out = done("compare good.json poor.json --no-free-motion")
+    assert max(map(len, out.splitlines())) <= 100
+    assert "additive epsilon" in out
+
+
 def test_by_a_band_the_answer_is_who_acts_first(done, plan):
     """In 100 columns, in a terminal as in a pipe, by the energy that is typed."""
     plan.save("ours.json")
