@@ -41,10 +41,6 @@ from quietarm.ocp.record import Setting
 DIED = "its worker died twice"
 _rehearsed: set[tuple[NamedProblem, str]] = set()
 
-_REHEARSAL = 3
-"""Generations, or points, that are found and forgotten before the first job of its kind in a
-process: what is loaded then, and compiled by IPOPT and others, is no part of a method's time."""
-
 
 @dataclass(frozen=True)
 class Job:
@@ -157,55 +153,48 @@ class Job:
         return front.restated(settings={**stated, JOB: digest_of_job(self)})
 
     def _find(self, rehearse: bool = False) -> Front:
+        # generations, or points, that are found and forgotten before the first job of its kind in
+        # a process: what is loaded then, and compiled by IPOPT and others, is no part of a
+        # method's time
+        rehearsal = 3
+        problem = self.problem
+        budget = self.budget
+        settings = dict(self.settings)
         method: Any = self.method
         named = NamedMethod.read(method) if isinstance(method, str) else None
+        common: Any = {
+            "profile": problem.profile,
+            "bound": problem.bound,
+            "seed": self.seed,
+        }
         if named and named.is_gradient_job:
-            return self._by_gradient(named, rehearse)
-        assert self.budget is not None  # only the gradient ends by itself
-        budget = self.budget
-        if rehearse:
-            budget = min(budget, _REHEARSAL * self._of_a_generation(named))
-        if named or is_of_pymoo(method):
-            return self._by_search(named, budget)
-        function = self.problem.recorded(
-            budget, noise=self.noise, reevaluate=self.reevaluate, seed=self.seed
-        )
-        run_method(method, function, self.seed, budget)
-        return function.front(self.label, self.seed)
-
-    def _by_gradient(self, named: NamedMethod, rehearse: bool) -> Front:
-        """The front of a method of the gradient, or of so few points as rehearse it."""
-        settings = dict(self.settings)
-        if rehearse:
-            settings["starts" if named.method == "multistart" else "points"] = _REHEARSAL
-        problem = self.problem
-        return gradient_front(
-            problem.task,
-            method=named,
-            settings=settings,
-            objectives=problem.objectives,
-            profile=problem.profile,
-            bound=problem.bound,
-            seed=self.seed,
-        )
-
-    def _of_a_generation(self, named: NamedMethod | None) -> int:
-        """Evaluations of a generation; about so many of a method that says nothing of them."""
-        if named is None:
-            return 100
-        preset = PRESETS[named.method]
-        population: Any = dict(self.settings).get("population")
-        return preset.evaluations(population or preset.population, 1, len(self.problem.objectives))
-
-    def _by_search(self, named: NamedMethod | None, budget: int) -> Front:
-        """The front of a metaheuristic, polished where its name says so."""
-        problem = self.problem
-        settings = dict(self.settings)
+            if rehearse:
+                settings["starts" if named.method == "multistart" else "points"] = rehearsal
+            return gradient_front(
+                problem.task,
+                method=named,
+                settings=settings,
+                objectives=problem.objectives,
+                **common,
+            )
         population: Any = settings.pop("population", None)
+        size = 100
         options = dict[str, Any]()
-        if named and named.polish:
-            options, settings = split_solver_options(settings)
-        method: Any = named.method if named else self.method
+        if named:
+            method = named.method
+            if named.polish:
+                options, settings = split_solver_options(settings)
+            preset = PRESETS[method]
+            of_population = population or preset.population
+            size = preset.evaluations(of_population, 1, len(problem.objectives))
+        assert budget is not None  # only the gradient ends by itself
+        budget = min(budget, rehearsal * size) if rehearse else budget
+        if not (named or is_of_pymoo(method)):
+            function = problem.recorded(
+                budget, noise=self.noise, reevaluate=self.reevaluate, seed=self.seed
+            )
+            run_method(method, function, self.seed, budget)
+            return function.front(self.label, self.seed)
         front = search(
             problem.task,
             algorithm=method,
@@ -215,9 +204,7 @@ class Job:
             objectives=problem.objectives,
             noise=self.noise,
             reevaluate=self.reevaluate,
-            profile=problem.profile,
-            bound=problem.bound,
-            seed=self.seed,
+            **common,
         )
         return polished(front, solver_with(options)) if named and named.polish else front
 
