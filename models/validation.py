@@ -306,6 +306,10 @@ def _check_side_by_side(plant: Plant, motions: Array, values: Array) -> None:
             )
 
 
+Rate = tuple[str, Expression, Expression]
+"""A method of a plant, a value, and the rate of it that the method gives."""
+
+
 def _check_rates(plant: Plant) -> None:
     """Rates of the joints, and of the tips, are the time derivatives of angles and displacements.
 
@@ -318,42 +322,20 @@ def _check_rates(plant: Plant) -> None:
     W, dW, ddW = (x[4 + i * plant.modes : 4 + (i + 1) * plant.modes] for i in range(3))
     moving = ca.vertcat(path.angle, path.speed, path.acceleration, W, dW)
     rates = ca.vertcat(path.speed, path.acceleration, path.jerk, dW, ddW)
-    pairs = list[tuple[str, Expression, Expression]]()
-    if _gives(plant, "joints"):
-        for joint in _call(plant, "joints", path):
-            for value, rate in pairwise(joint):
-                if rate is None:
-                    raise _wrong(
-                        plant,
-                        "joints",
-                        "gives no jerk where the path has one",
-                        "give it",
-                    )
-                pairs.append(("joints", value, rate))
-    modes = [ca.vertsplit(part) for part in (W, dW, ddW)]
-    tips = _tips(plant, path, modes[0])
-    for order, method in enumerate(("tip_speeds", "tip_accelerations"), start=1):
-        if not _gives(plant, method):  # they are CasADi's
-            continue
-        before = tips if order == 1 else _call(plant, "tip_speeds", path, *modes[:2])
-        given = _call(plant, method, path, *modes[: order + 1])
-        if len(tips) != len(given):
-            what = f"returns {len(given)} of {len(tips)} tips"
-            raise _wrong(plant, method, what, "give one for every tip")
-        pairs += ((method, value, rate) for value, rate in zip(before, given))
+    pairs = [
+        *_rates_of_joints(plant, path),
+        *_rates_of_tips(plant, path, [ca.vertsplit(part) for part in (W, dW, ddW)]),
+    ]
     if not pairs:
         return
     angles = _angles_of(plant)
     random = np.random.default_rng(0).uniform(-1, 1, (len(angles), size))
     random[:, 0] = angles
     methods, values, stated = zip(*pairs)
-    due = ca.jtimes(ca.vertcat(*values), moving, rates)
-    both = ca.Function(
-        "rates",
-        [x],
-        [ca.densify(due), ca.densify(ca.vertcat(*stated))],
-    )
-    should, are = (table.full() for table in both(random.T))
+    due = ca.densify(ca.jtimes(ca.vertcat(*values), moving, rates))
+    outputs = [due, ca.densify(ca.vertcat(*stated))]
+    both = Compiled(lambda: ca.Function("rates", [x], outputs).map(len(angles)))
+    should, are = both(random.T)
     largest = np.abs(should).max(axis=1, keepdims=True)
     rounding = 1e-9 * np.maximum(largest, 1e-3)
     for row, column in np.argwhere(~(np.abs(are - should) <= rounding)):
@@ -365,6 +347,34 @@ def _check_rates(plant: Plant) -> None:
             what,
             "give the time derivatives along the path",
         )
+
+
+def _rates_of_joints(plant: Plant, path: JointMotion) -> Iterator[Rate]:
+    """Each value of the joints' motions and what a plant gives as its rate."""
+    if not _gives(plant, "joints"):
+        return
+    for joint in _call(plant, "joints", path):
+        for value, rate in pairwise(joint):
+            if rate is None:
+                raise _wrong(plant, "joints", "gives no jerk where the path has one", "give it")
+            yield "joints", value, rate
+
+
+def _rates_of_tips(
+    plant: Plant, path: JointMotion, modes: Sequence[Sequence[Expression]]
+) -> Iterator[Rate]:
+    """The same of the tips, of what is not CasADi's; modes are W, W' and W''."""
+    tips = _tips(plant, path, modes[0])
+    for order, method in enumerate(("tip_speeds", "tip_accelerations"), start=1):
+        if not _gives(plant, method):
+            continue
+        before = tips if order == 1 else _call(plant, "tip_speeds", path, *modes[:2])
+        given = _call(plant, method, path, *modes[: order + 1])
+        if len(tips) != len(given):
+            what = f"returns {len(given)} of {len(tips)} tips"
+            raise _wrong(plant, method, what, "give one for every tip")
+        for value, rate in zip(before, given):
+            yield method, value, rate
 
 
 def _check_finite(plant: Plant, motions: Array, table: Array) -> None:

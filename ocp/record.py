@@ -22,10 +22,9 @@ from quietarm.ocp.checks import (
     quoted,
     whole,
 )
-from quietarm.ocp.rest import rest_of
 
 if TYPE_CHECKING:
-    from quietarm.ocp.judged_motion import JudgedMotion
+    from quietarm.ocp.figures import Figures
 
 Setting = str | bool | int | float | None
 
@@ -156,14 +155,9 @@ class Verification:
 
     @classmethod
     def between(
-        cls, steps: int, energy: float, residual: float, candidate: JudgedMotion
+        cls, steps: int, energy: float, residual: float, motion: Figures, rest: float = 0.0
     ) -> Verification:
         """Compare values by fixed steps [J, m] with those of CVODES."""
         return cls(
-            steps,
-            energy,
-            residual,
-            energy - candidate.energy,
-            residual - candidate.residual,
-            rest_of(candidate.task),
+            steps, energy, residual, energy - motion.energy, residual - motion.residual, rest
         )

@@ -28,6 +28,7 @@ from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.free_motion import FreeMotion
 from quietarm.ocp.profiles.joint_profile import JointPath
 from quietarm.ocp.record import Record, Verification, number_of_starts
+from quietarm.ocp.rest import rest_of
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.trajectory import Trajectory
 from quietarm.ocp.solvers.choice import as_part
@@ -107,7 +108,9 @@ class Floor(MotionAnswer):
     @cached_property
     def verification(self) -> Verification:
         """Distance of the solver's figures, on its intervals, from those by CVODES."""
-        return Verification.between(self.free.steps, self.solver_energy, 0.0, self.candidate)
+        return Verification.between(
+            self.free.steps, self.solver_energy, 0.0, self.figures, rest_of(self.task)
+        )
 
     @property
     def smooth(self) -> bool:

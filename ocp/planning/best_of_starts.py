@@ -23,57 +23,6 @@ SAME = 1e-5
 """Solutions whose objectives differ by less than this share count as one motion."""
 
 
-def minimum_of(solution: Solution, problem: Program) -> float:
-    """What was minimised; infinite where nothing was solved."""
-    values = {**solution.peaks, ENERGY: solution.energy}
-    minimum = sum(weight * values[name] for name, weight in problem.minimise.items())
-    return minimum if solution.status.solved else np.inf
-
-
-def better(solution: Solution, known: Solution, problem: Program) -> bool:
-    """Whether a solution is lower than a known one by more than the solver's tolerance."""
-    minimum = minimum_of(solution, problem)
-    known_minimum = minimum_of(known, problem)
-    if known_minimum == np.inf:
-        return minimum < np.inf
-    return minimum < known_minimum - SAME * abs(known_minimum)
-
-
-def best_of_starts(
-    problems: Sequence[Program],
-    starts: Sequence[Sequence[Array]],
-    solver: Solver,
-    *,
-    warm: bool = False,
-    leave: bool = True,
-) -> list[Solution]:
-    """The best solution of each problem from its starts, all solved at once.
-
-    Iterations are those of all its starts. Starts are left where others agree, if that is wanted.
-    """
-    problem_of_start = [i for i, guesses in enumerate(starts) for _ in guesses]
-    all_starts = [start for guesses in starts for start in guesses]
-    has_several = len(all_starts) > len(problems)
-    solutions = solver.solve(
-        [problems[i] for i in problem_of_start],
-        all_starts,
-        warm=warm,
-        groups=problem_of_start if leave and has_several else None,
-    )
-    remaining = iter(solutions)
-    best: list[Solution] = []
-    for problem, guesses in zip(problems, starts):
-        of_problem = list(islice(remaining, len(guesses)))
-        best.append(_lowest(of_problem, problem))
-    return best
-
-
-def _lowest(solutions: Sequence[Solution], problem: Program) -> Solution:
-    """The best of some solutions, with the iterations of all."""
-    lowest = min(solutions, key=lambda solution: minimum_of(solution, problem))
-    return replace(lowest, iterations=sum(solution.iterations for solution in solutions))
-
-
 def solve_from_starts(
     problem: Program,
     starts: Sequence[Array],
@@ -140,3 +89,54 @@ def is_beyond(problem: Program, start: Array, share: float = 0.05) -> bool:
         return False
     excess = least_excess(problem, start)
     return excess.holds and excess.share > share
+
+
+def best_of_starts(
+    problems: Sequence[Program],
+    starts: Sequence[Sequence[Array]],
+    solver: Solver,
+    *,
+    warm: bool = False,
+    leave: bool = True,
+) -> list[Solution]:
+    """The best solution of each problem from its starts, all solved at once.
+
+    Iterations are those of all its starts. Starts are left where others agree, if that is wanted.
+    """
+    problem_of_start = [i for i, guesses in enumerate(starts) for _ in guesses]
+    all_starts = [start for guesses in starts for start in guesses]
+    has_several = len(all_starts) > len(problems)
+    solutions = solver.solve(
+        [problems[i] for i in problem_of_start],
+        all_starts,
+        warm=warm,
+        groups=problem_of_start if leave and has_several else None,
+    )
+    remaining = iter(solutions)
+    best: list[Solution] = []
+    for problem, guesses in zip(problems, starts):
+        of_problem = list(islice(remaining, len(guesses)))
+        best.append(_lowest(of_problem, problem))
+    return best
+
+
+def _lowest(solutions: Sequence[Solution], problem: Program) -> Solution:
+    """The best of some solutions, with the iterations of all."""
+    lowest = min(solutions, key=lambda solution: minimum_of(solution, problem))
+    return replace(lowest, iterations=sum(solution.iterations for solution in solutions))
+
+
+def better(solution: Solution, known: Solution, problem: Program) -> bool:
+    """Whether a solution is lower than a known one by more than the solver's tolerance."""
+    minimum = minimum_of(solution, problem)
+    known_minimum = minimum_of(known, problem)
+    if known_minimum == np.inf:
+        return minimum < np.inf
+    return minimum < known_minimum - SAME * abs(known_minimum)
+
+
+def minimum_of(solution: Solution, problem: Program) -> float:
+    """What was minimised; infinite where nothing was solved."""
+    values = {**solution.peaks, ENERGY: solution.energy}
+    minimum = sum(weight * values[name] for name, weight in problem.minimise.items())
+    return minimum if solution.status.solved else np.inf

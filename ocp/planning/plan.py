@@ -29,7 +29,7 @@ from quietarm.ocp.planning.move_table import USUAL_RATE, move_csv, ticks_of_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import Record, Setting, Verification
-from quietarm.ocp.rest import is_at_rest, still_of
+from quietarm.ocp.rest import is_at_rest, rest_of, still_of
 from quietarm.ocp.robustness import Sensitivity, peaks_between, sensitivities
 from quietarm.ocp.saved import to_html
 from quietarm.ocp.simulation.mesh import default_steps
@@ -167,7 +167,7 @@ class Plan(MotionAnswer):
         evaluation = evaluator([self.coefficients])
         energy = float(evaluation.energy[0, 0])
         residual = float(evaluation.residual.max())
-        return Verification.between(steps, energy, residual, self.candidate)
+        return Verification.between(steps, energy, residual, self.figures, rest_of(self.task))
 
     def on(self, task: PointToPoint) -> Plan:
         """The same motion for an uncertain task with the same nominal plant."""
