@@ -11,7 +11,13 @@ from pages import shown_file
 
 import quietarm as qa
 from quietarm.models import load_plant_file
-from quietarm.ocp import FileFormatError, JudgedMotion, evaluate_coefficients, remove_figure
+from quietarm.ocp import (
+    FileFormatError,
+    JudgedMotion,
+    evaluate_coefficients,
+    remove_figure,
+    remove_quantity,
+)
 from quietarm.studies.cli.application import COMMANDS
 from quietarm.studies.sweep.store import Store
 from quietarm.views.explore.by_hand import open_plant
@@ -98,6 +104,8 @@ def test_every_command_knows_it(own, done, captions):
 
 def test_a_sweep_holds_it_for_every_cell(own, done, refused):
     line = "sweep single-link --target 20deg,30deg --duration 0.8 --terms 2 --quiet"
+    with Path("mine.py").open("a") as file:  # and the peak of a quantity, which nothing limits
+        file.write(shown_file("extend", "tip_acceleration.py"))
     printed = done(f"{line} --plant-file mine.py --output moves.zarr")
     store = Store(Path("moves.zarr"))
     values = store.read("rms_torque")
@@ -111,10 +119,13 @@ def test_a_sweep_holds_it_for_every_cell(own, done, refused):
     assert store.dataset["rms_torque"].attrs["units"] == "N m"
     # who does not know the figure reads the rest, and goes on with no sweep that has it
     remove_figure("rms_torque")
+    remove_quantity("tip_acceleration")
     without = Store(Path("moves.zarr"))
     without.check()
     assert np.isfinite(without.read("energy")).all()
-    assert "it differs in rms_torque" in refused(f"{line} --output moves.zarr")
+    assert "it differs in peak_tip_acceleration, rms_torque" in refused(
+        f"{line} --output moves.zarr"
+    )
     # of which variables the digests are is no more believed than the rest
     zarr.open_group("moves.zarr", mode="r+")["digest"].attrs["variables"] = ["energy", {}]
     with pytest.raises(FileFormatError, match="its digests are of"):
