@@ -16,6 +16,7 @@ from quietarm.ocp import Plan
 from quietarm.ocp.escapes import c_comment, c_string
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
+from quietarm.views.formats.between_rows import note_of_calls
 from quietarm.views.formats.exact_path import (
     figures_of,
     path_function,
@@ -31,6 +32,7 @@ from quietarm.views.formats.export_format import (
     Progress,
     values_of,
 )
+from quietarm.views.formats.row_settings import CYCLE
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import moved, window_words
 
@@ -50,6 +52,7 @@ class CSource(ExportFormat):
     beside = (".h",)
     meaning = "C source"
     takes = (PLAN, DATASET)
+    settings = (CYCLE,)
 
     def check_path(self, path: Path) -> None:
         """Refuse a name that no function can have."""
@@ -60,11 +63,15 @@ class CSource(ExportFormat):
                 "name of letters, digits and _ that begins with a letter"
             )
 
-    def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:
+    def export(
+        self, answers: Answers, path: Path, report: Progress, *args: Any, cycle: float,
+        **others: Any,
+    ) -> Exported:  # fmt: skip
         """Header and source."""
         (moves,) = values_of(answers)
         header, source = _c_files(moves, path.stem)
-        return Exported({path.with_suffix(".h"): header, path: source})
+        notes = [note_of_calls(moves, cycle)] if isinstance(moves, Plan) else []
+        return Exported({path.with_suffix(".h"): header, path: source}, notes)
 
 
 def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:
