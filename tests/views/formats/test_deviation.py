@@ -51,7 +51,7 @@ def ticks(plan, rate):
     return np.arange(int(np.ceil(plan.task.duration * rate - 1e-9)) + 1) / rate
 
 
-@pytest.mark.slow_after(2)
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("move", MOVES.values(), ids=MOVES)
 def test_the_bound_is_above_the_error_and_close_to_it(move):
     plan = plan_along(*move)
