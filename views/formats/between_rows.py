@@ -19,6 +19,7 @@ from quietarm.views.formats.deviation import (
     MOST_POINTS,
     deviation_of,
     deviation_words,
+    motion_at,
     pieces_through,
 )
 from quietarm.views.tips import tip_words
@@ -53,6 +54,18 @@ def note_of_points(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) 
     between = _BETWEEN[derivatives].format(ANGLE.of(plan.task.plant.joint))
     words = f"between the points, by {between}, {deviation_words(plan, deviation)} off the plan"
     return "; ".join(filter(None, [interpolation_note(plan, rate, columns), words]))
+
+
+def note_of_calls(plan: Plan, cycle: float) -> str:
+    """How far straight lines are from the plan between the calls of what is exact at each call."""
+    times = times_of(plan, 1 / cycle)
+    if len(times) > MOST_POINTS:
+        return "exact at any time"
+    deviation = deviation_of(plan, pieces_through(times, motion_at(plan, times), LINEAR))
+    words = deviation_words(plan, deviation)
+    return (
+        f"exact at any time; straight lines between calls {1e3 * cycle:g} ms apart are {words} off"
+    )
 
 
 def _derivatives_in(columns: Sequence[str]) -> int:

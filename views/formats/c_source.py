@@ -16,6 +16,7 @@ from quietarm.ocp import Plan
 from quietarm.ocp.escapes import c_comment, c_string
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import OF_MOVES
+from quietarm.views.formats.between_rows import note_of_calls
 from quietarm.views.formats.exact_path import (
     figures_of,
     path_function,
@@ -31,6 +32,7 @@ from quietarm.views.formats.export_format import (
     Progress,
     values_of,
 )
+from quietarm.views.formats.row_settings import CYCLE
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import moved, window_words
 
@@ -49,7 +51,9 @@ class CSource(ExportFormat):
     endings = (".c",)
     beside = (".h",)
     meaning = "C source"
+    of_the_load = True
     takes = (PLAN, DATASET)
+    settings = (CYCLE,)
 
     def check_path(self, path: Path) -> None:
         """Refuse a name that no function can have."""
@@ -60,18 +64,15 @@ class CSource(ExportFormat):
                 "name of letters, digits and _ that begins with a letter"
             )
 
-    def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:
+    def export(
+        self, answers: Answers, path: Path, report: Progress, *args: Any, cycle: float,
+        **others: Any,
+    ) -> Exported:  # fmt: skip
         """Header and source."""
         (moves,) = values_of(answers)
         header, source = _c_files(moves, path.stem)
-        through_drive = isinstance(moves, Plan) and moves.candidate.inverts_drive
-        notes = [_OF_THE_LOAD] if through_drive else []
+        notes = [note_of_calls(moves, cycle)] if isinstance(moves, Plan) else []
         return Exported({path.with_suffix(".h"): header, path: source}, notes)
-
-
-_OF_THE_LOAD = (
-    "the C has the load's path, without the drive; set points through the drive: a .csv or .yaml"
-)
 
 
 def _c_files(moves: Plan | MoveLibrary, name: str) -> tuple[str, str]:

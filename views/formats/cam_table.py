@@ -100,6 +100,7 @@ class CamTable(ExportFormat):
     name = "cam"
     endings = (".cam",)
     meaning = "a cam table"
+    of_the_load = True
     settings = (
         ExportSetting("layout", "table", f"The layout: {joined(_LAYOUTS, 'or')}."),
         ExportSetting("points", 201, "Points of the cam, both ends included.", 5, 10_000),

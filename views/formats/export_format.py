@@ -154,6 +154,8 @@ class ExportFormat(ABC):
     """True if it is a single text, which can go to standard output."""
     beside: ClassVar[tuple[str, ...]] = ()
     """Endings of further files that are written beside the named one."""
+    of_the_load: ClassVar[bool] = False
+    """True if it has the load's path where a plant has a drive, not the set points through it."""
     pieces: ClassVar[str] = ""
     """The unit of progress if writing takes long, such as frames."""
 

@@ -15,6 +15,7 @@ from quietarm.views.formats.export_format import (
     ExportFormat,
     Progress,
     format_of,
+    values_of,
 )
 
 
@@ -62,4 +63,16 @@ def write_in(
     """Write answers in a format, all files or none; what was written, and what is said of it."""
     made = form.make(answers, path, settings or {}, report)
     write_together({**made.files})
-    return [*made.files], [note for note in made.notes if note]
+    notes = [*made.notes, *_drive_notes(form, answers)]
+    return [*made.files], [note for note in notes if note]
+
+
+def _drive_notes(form: ExportFormat, answers: Answers) -> list[str]:
+    """Say that a format has the load's path of a plan whose set points go through a drive."""
+    plans = [answer for answer in values_of(answers) if isinstance(answer, Plan)]
+    if form.of_the_load and any(plan.candidate.inverts_drive for plan in plans):
+        return [
+            f"{form.meaning} has the load's path, without the drive; a table (.csv) and messages "
+            "of ROS have the set points through the drive"
+        ]
+    return []

@@ -54,6 +54,7 @@ class InterpolatedPosition(ExportFormat):
     name = "cia402"
     endings = (".cia402",)
     meaning = "records of CiA 402's interpolated position mode"
+    of_the_load = True
     settings = (
         ExportSetting("period", 0.001, "Period of the records, 60C2h [s].", 1e-4, 0.255, unit="s"),
         ExportSetting(

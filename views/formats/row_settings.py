@@ -9,4 +9,7 @@ COLUMNS = ExportSetting(
     "columns", USUAL_COLUMNS, "Columns, with units: time:ms,angle:deg,speed,acceleration,jerk,"
     "tip:mm,torque,power.",
 )  # fmt: skip
+CYCLE = ExportSetting(
+    "cycle", 0.001, "Time between two calls [s], for what is said of it.", 1e-6, 1e3, unit="s"
+)
 RATE = ExportSetting("rate", USUAL_RATE, "Rows or points in a second [Hz].", unit="Hz")

@@ -12,6 +12,7 @@ import casadi as ca
 from quietarm.models.dimensions import WAY
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import st_comment, st_number
+from quietarm.views.formats.between_rows import note_of_calls
 from quietarm.views.formats.exact_path import figures_of, path_function, positions_at, title_of
 from quietarm.views.formats.export_format import (
     Answers,
@@ -21,6 +22,7 @@ from quietarm.views.formats.export_format import (
     Progress,
     values_of,
 )
+from quietarm.views.formats.row_settings import CYCLE
 from quietarm.views.report.templates import templates
 
 _DIGITS = {"LREAL": 17, "REAL": 9}
@@ -71,7 +73,9 @@ class StructuredText(ExportFormat):
     name = "st"
     endings = (".st",)
     meaning = "a function block in Structured Text"
+    of_the_load = True
     settings = (
+        CYCLE,
         ExportSetting("real", "LREAL", "Type of real numbers: LREAL, or REAL of a small PLC."),
     )
 
@@ -84,13 +88,15 @@ class StructuredText(ExportFormat):
             )
 
     def export(
-        self, answers: Answers, path: Path, report: Progress, *args: Any, real: str, **others: Any
-    ) -> Exported:
+        self, answers: Answers, path: Path, report: Progress, *args: Any, cycle: float, real: str,
+        **others: Any,
+    ) -> Exported:  # fmt: skip
         """Write the block, whose name is FB_ and the file's."""
         (plan,) = values_of(answers)
         if real not in _DIGITS:
             raise ValueError(f"real is {real!r}; give {' or '.join(_DIGITS)}")
-        return Exported({path: _block(plan, f"FB_{path.stem}", real)})
+        notes = [note_of_calls(plan, cycle)]
+        return Exported({path: _block(plan, f"FB_{path.stem}", real)}, notes)
 
 
 def _block(plan: Plan, name: str, real: str) -> str:

@@ -30,7 +30,7 @@ class OwnSqp(qa.Sqp):
     )
     second_order: Literal["exact", "estimated"] = option("exact", "What curvature is.")
     patient: bool = option(False, "Whether it waits.")
-    cap: float | None = option(None, "The longest step; none by default.", positive)
+    cap: float | None = option(None, "The longest step; none by default.", positive, word="amount")
 
     def solve(self, *given, **settings):
         self.solved.add((self.boldness, self.second_order))
@@ -70,6 +70,13 @@ def test_a_command_has_it_and_its_file_states_it(made_up, call, folder, line):
         settings = kind.load(path).record.settings
         assert settings["solver_boldness"] == 0.25
         assert stated_solver(settings) == OwnSqp(boldness=0.25, second_order="estimated")
+
+
+def test_a_value_that_is_none_is_said_with_the_article_of_its_word(made_up, call, folder):
+    code, _, err = call(f"plan {MOVE} --cap wide")
+    assert (code, "'wide' is not an amount; give" in err) == (2, True)
+    _, _, err = call(f"plan {MOVE} --boldness wide")
+    assert "'wide' is not a share; give" in err
 
 
 def test_an_option_that_may_be_none_is_a_number_on_the_command_line(made_up, done, call):

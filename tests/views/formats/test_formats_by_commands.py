@@ -20,6 +20,7 @@ def outputs(name, forms=FORMATS):
     return " ".join(f"--output {name}{form.endings[0]}" for form in forms)
 
 
+@pytest.mark.slow
 def test_evaluate_export_and_python_write_the_same_files(call, folder):
     line = "evaluate single-link --target 30deg --duration 0.3 --coefficients=0.003,-0.17"
     assert call(f"{line} --quiet --output zv.json {outputs('zv', TEXTS)}")[0] == 0

@@ -16,7 +16,7 @@ from hostile import INJECTED, LABEL, NAMES, Hostile
 from matplotlib.figure import Figure
 from rich.console import Console
 from scipy.io import loadmat
-from st_interpreter import Block
+from st_interpreter import Block, needs_matiec, run_by_matiec
 
 import quietarm as qa
 from quietarm.models.robot.urdf.read_urdf import read_urdf
@@ -138,6 +138,14 @@ def test_records_and_cams_have_the_names_in_a_heading_that_is_no_formula(plan, t
     stems = [cell.removesuffix(ending) for cell in heading if cell.endswith(ending)]
     assert [stem.removeprefix("'") for stem in stems] == NAMES
     assert {len(row) for row in rows} == {len(heading)}
+
+
+@pytest.mark.slow
+@needs_matiec
+def test_a_compiler_of_structured_text_finds_nothing_else(plan, tmp_path):
+    export_plan(plan, tmp_path / "move.st")
+    (row,) = run_by_matiec(tmp_path / "move.st", [(True, 0.1)], len(NAMES))
+    assert len(row) == 3 + 3 * len(NAMES)
 
 
 def test_no_title_ends_a_comment_of_structured_text():

@@ -20,6 +20,16 @@ HEADINGS_OF_2_0 = {
 }
 
 
+def test_both_methods_write_the_same_table(cycloid, folder):
+    cycloid.save_csv("saved.csv", 100.0)
+    qa.views.export_plan(cycloid, "exported.csv", rate=100.0)
+    text = Path("saved.csv").read_text()
+    assert text == Path("exported.csv").read_text() == move_csv(cycloid, rate=100.0)
+    assert text.startswith(f"{HEADINGS_OF_2_0['plan']}\n0,0,0,0,0,0,0\n")
+    assert len(text.splitlines()) == 1 + 81  # 0.8 s at 100 Hz
+
+
+@pytest.mark.slow
 def test_every_command_and_method_writes_the_same_table(done, folder):
     done(
         "evaluate single-link --target 30deg --duration 0.8 --coefficients=0.003,-0.17 --quiet "

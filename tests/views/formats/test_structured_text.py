@@ -48,7 +48,7 @@ def block_of(plan, path, **settings):
     return Block(path.read_text())
 
 
-@pytest.mark.slow_after(3)
+@pytest.mark.slow_after(1)
 @needs_compiler
 @pytest.mark.parametrize("move", MOVES.values(), ids=MOVES)
 def test_a_block_gives_what_the_c_gives_to_the_last_digits(move, tmp_path):
