@@ -35,7 +35,7 @@ _RATE = 8000
 """Least number of steps in a second; half as many change what is left by less than 1 %."""
 _RADIANS = 0.4
 """Most radians of the fastest part in a step."""
-MOST_STEPS = 2_000_000
+MOST_STEPS = 1_000_000
 
 
 class DriveFigures(NamedTuple):

@@ -40,6 +40,7 @@ def test_what_builds_up_is_what_a_direct_simulation_of_all_moves_leaves(move):
     assert left.max() > 1.5 * left[0]
 
 
+@pytest.mark.slow
 def test_a_plan_at_rest_stays_at_rest_and_its_worst_case_is_a_corner():
     plan = qa.plan_move(qa.PointToPoint(AXIS, 0.8, 1.0))
     assert plan.cycle(0.3, 12).left.max() < 1e-6
