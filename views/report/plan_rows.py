@@ -254,7 +254,18 @@ def _drive_rows(plan: Plan) -> list[Row]:
             f"load is within {off_path} of the plan, peak {figures.peak_torque:.4g} {effort} with "
             f"friction{heat}",
         ),
+        *_worst_on_drive(plan),
     ]
+
+
+def _worst_on_drive(plan: Plan) -> list[Row]:
+    """What is left on the drive at the worst errors of a robust plan."""
+    if plan.worst is None:
+        return []
+    figures = plan.candidate.perturbed(plan.worst.errors).on_drive
+    assert figures is not None  # as the nominal one
+    worst = Worst(plan.worst.errors, figures.residual)
+    return [("worst on it", worst_in_words(worst, plan.task.plant.tip_unit) + " left")]
 
 
 def _cycle_rows(plan: Plan) -> list[Row]:
