@@ -292,18 +292,27 @@ def _cycle_rows(plan: Plan) -> list[Row]:
             f"{cycle.energy:.4g} J, or {cycle.energy_with_recovery:.4g} J where the DC link gives "
             "back what the motor generates",
         ),
-        (f"left in {_cycles(shuttle.repeat)}", _builds_up(plan.task, cycle)),
-        (f"if {_signed(worst.errors)}", _builds_up(plan.task, worst)),
+        (f"left in {_cycles(shuttle.repeat)}", _builds_up(plan.task, cycle.left)),
+        (f"if {_signed(worst.errors)}", _builds_up(plan.task, worst.left)),
+        *_cycles_on_drive(plan.task, worst),
     ]
+
+
+def _cycles_on_drive(task: PointToPoint, worst: Cycle) -> list[Row]:
+    """What builds up on the drive at the worst errors."""
+    try:
+        left = worst.on_drive()
+    except SolverFailedError as error:
+        return [("the same on the drive", f"warning: {error}")]
+    return [] if left is None else [("the same on the drive", _builds_up(task, left))]
 
 
 def _cycles(count: int) -> str:
     return "1 cycle" if count == 1 else f"{count} cycles"
 
 
-def _builds_up(task: PointToPoint, cycle: Cycle) -> str:
+def _builds_up(task: PointToPoint, left: np.ndarray) -> str:
     """How the vibration after each move changes from the first to the last."""
-    left = cycle.left
     if left.max() < REST * task.smallness:
         return f"at rest after each move (below {_tip(task, REST * task.smallness)})"
     return (
