@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from operator import mul
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from quietarm.models.beam_modes import BeamModes, beam_modes
 from quietarm.models.drawing import Body, flexible_link
@@ -88,7 +88,7 @@ class FlexibleBeam(Plant):
         youngs_modulus: float,
         length: float,
         tip_mass: float = 0.0,
-        **parameters: float,
+        **parameters: Any,
     ) -> FlexibleBeam:
         """A beam whose frequency is not measured, from its section [m] and material [kg/m^3, Pa].
 

@@ -43,7 +43,7 @@ class LinearAxis(Plant):
     )
     mass: float = parameter(8.0, "kg", _MADE_UP, "of all that moves, the load and the motor's part")
     load: float = parameter(2.0, "kg", _MADE_UP, "of that, what swings")
-    friction: float = parameter(5.0, "N s/m", _MADE_UP, "viscous friction of the carriage")
+    friction: float = parameter(5.0, "N s/m", _MADE_UP, "viscous; dry friction by --drive")
     mode_count: float = parameter(1.0, COUNT, _MADE_UP, "how many modes, 1 or 2")
 
     def __post_init__(self) -> None:

@@ -209,11 +209,12 @@ def _run(file: PlantFile) -> ModuleType:
 
 
 def _to_other_process(plant: Plant) -> tuple[Callable[..., Plant], tuple[object, ...]]:
-    return _from_other_process, (_file_of[type(plant)], plant.name, plant.parameters)
+    entries = {**plant.parameters, "drive": plant.drive}
+    return _from_other_process, (_file_of[type(plant)], plant.name, entries)
 
 
-def _from_other_process(file: PlantFile, name: str, parameters: Mapping[str, float]) -> Plant:
-    return _plants_of(file)[name](**parameters)
+def _from_other_process(file: PlantFile, name: str, entries: Mapping[str, Any]) -> Plant:
+    return _plants_of(file)[name](**entries)
 
 
 def _value_to_other_process(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import Plant, known_plants
-from quietarm.models.dimensions import NONE, SECOND, TIP, WAY, Unit
+from quietarm.models.dimensions import EFFORT, NONE, SECOND, TIP, TORQUE, WAY, Unit
 from quietarm.models.joint_motion import LINEAR
 from quietarm.models.validation import check_along, check_contract
 from quietarm.ocp.checks import (
@@ -38,6 +38,7 @@ from quietarm.ocp.limits import (
     Quantity,
     Sides,
     TorqueSpeedLine,
+    sides_of,
     units_of_joints,
 )
 from quietarm.ocp.uncertainty import (
@@ -327,6 +328,7 @@ class PointToPoint:
                     stacklevel=3,
                 )
         self._check_move(unit)
+        self._check_friction()
         for plant in self.perturbed_plants:
             check_contract(plant)
             check_along(plant, self.start, self.target)
@@ -397,6 +399,23 @@ class PointToPoint:
                     f"the {name} state has {len(state.W)} modes and {self.plant.name} has {modes}; "
                     "give W and W' of each"
                 )
+
+    def _check_friction(self) -> None:
+        """Refuse a limit of the torque that dry friction takes whole."""
+        drive = self.plant.drive
+        bounds = self.bounds.get("torque")
+        if isinstance(bounds, Mapping):
+            bounds = bounds.get(self.plant.joint_names[0])
+        if drive is None or bounds is None:
+            return
+        lower, upper = sides_of(bounds)
+        given = upper if self.span > 0 else -lower
+        if given <= drive.coulomb:
+            unit = EFFORT.of(self.plant.joint)
+            raise ValueError(
+                f"{TORQUE.of(self.plant.joint)} limit is {given:g} {unit} and dry friction takes "
+                f"{drive.coulomb:g} {unit}; give a larger limit, or the friction as it is"
+            )
 
     @property
     def span(self) -> float:

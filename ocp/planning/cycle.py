@@ -18,12 +18,19 @@ from quietarm.models.joint_motion import MIXED
 from quietarm.ocp.checks import not_negative, whole
 from quietarm.ocp.energy import CopperLoss
 from quietarm.ocp.judged_motion import JudgedMotion
-from quietarm.ocp.simulation.free_vibration import vibration_of
+from quietarm.ocp.simulation.free_vibration import fastest_along, vibration_of
+from quietarm.ocp.simulation.on_drive import run_on_drive, steps_a_second, tip_places
+from quietarm.ocp.simulation.servo import Servo, as_held
+from quietarm.ocp.simulation.set_points import SetPoints
 from quietarm.ocp.task import ModalState, PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
 Array = NDArray[np.float64]
 MOST_CYCLES = 100_000
+_STEPS = 4000
+"""Least steps in a second of cycles on a drive."""
+_MOST_STEPS = 200_000
+"""Of cycles on a drive: they take some seconds."""
 _USUAL_ERROR = {"frequency": 0.05}
 """Errors of a task that has none, at which it is shown what builds up."""
 
@@ -173,6 +180,52 @@ class Cycle:
     def left(self) -> Array:
         """Largest vibration after each move [m], within the residual window, without the next."""
         return self._builds_up(self.errors)
+
+    def on_drive(self) -> Array | None:
+        """Return the largest distance of a tip after each move [m], by a simulation of the drive.
+
+        It is that within the dwell; after the last move within the residual window. None where no
+        drive is stated whose loops are known, without a dwell, and of cycles that last too long.
+        """
+        drive = self.there.task.plant.drive
+        task = self.there.task
+        window = task.residual_window
+        seconds = self.shuttle.repeat * self.time + window
+        if drive is None or not drive.has_loops or not self.shuttle.dwell:
+            return None
+        servo = Servo(perturb_plant(as_held(task.plant, task.target), self.errors), task.start)
+        fastest = fastest_along(task.plant, task.start, task.target)
+        if seconds * steps_a_second(servo, fastest, _STEPS) > _MOST_STEPS:
+            return None
+        points = self._set_points()
+        run = run_on_drive(servo, points, window, fastest, task.initial_state, _STEPS)
+        length = task.duration + self.shuttle.dwell
+        left = list[float]()
+        for number in range(2 * self.shuttle.repeat):
+            arrival = number * length + task.duration
+            end = arrival + self.shuttle.dwell
+            if number == 2 * self.shuttle.repeat - 1:
+                end = arrival + window
+            inside = (run.time >= arrival) & (run.time < end)
+            target = self.legs[number % 2].task.target
+            left.append(float(np.abs(tip_places(servo, run, target)[:, inside]).max()))
+        return np.array(left)
+
+    def _set_points(self) -> SetPoints:
+        """Set points of all moves in turn; a dwell that is shorter than the servo takes cuts."""
+        rate = 1000.0
+        length = self.there.task.duration + self.shuttle.dwell
+        rows = list[Array]()
+        for number in range(2 * self.shuttle.repeat):
+            points = self._rows_of_legs[number % 2]
+            times = np.arange(0.0, length - 1e-9, 1 / rate)
+            rows.append(np.vstack([times + number * length, points.at(times)]))
+        return SetPoints(*np.hstack(rows))
+
+    @cached_property
+    def _rows_of_legs(self) -> tuple[SetPoints, SetPoints]:
+        there, back = (leg.set_points(1000.0) for leg in self.legs)
+        return there, back
 
     def with_errors(self, errors: Mapping[str, float]) -> Cycle:
         """The same cycles on the plant with these relative errors."""

@@ -35,7 +35,7 @@ _RATE = 8000
 """Least number of steps in a second; half as many change what is left by less than 1 %."""
 _RADIANS = 0.4
 """Most radians of the fastest part in a step."""
-MOST_STEPS = 2_000_000
+MOST_STEPS = 1_000_000
 
 
 class DriveFigures(NamedTuple):
@@ -99,9 +99,9 @@ _GROWS = (
 )
 
 
-def steps_a_second(servo: Servo, fastest: float) -> float:
+def steps_a_second(servo: Servo, fastest: float, least: float = _RATE) -> float:
     """Steps that a drive needs, whose structure has modes up to a frequency [rad/s]."""
-    return max(_RATE, max(servo.fastest, fastest) / _RADIANS)
+    return max(least, max(servo.fastest, fastest) / _RADIANS)
 
 
 def run_on_drive(
@@ -110,6 +110,7 @@ def run_on_drive(
     rest: float,
     fastest: float,
     initial: tuple[float, ...] = (),
+    least: float = _RATE,
 ) -> DriveRun:
     """Follow set points by the servo, and go on after the last one.
 
@@ -125,6 +126,8 @@ def run_on_drive(
         Largest angular frequency of the structure [rad/s].
     initial : tuple of float
         W [m] and then W' [m/s] at the start; at rest by default.
+    least : float
+        Least number of steps in a second.
 
     Raises
     ------
@@ -133,7 +136,7 @@ def run_on_drive(
     """
     if grows(servo):
         raise SolverFailedError(_GROWS)
-    rate = steps_a_second(servo, fastest)
+    rate = steps_a_second(servo, fastest, least)
     count = math.ceil((set_points.time[-1] + rest) * rate)
     if count > MOST_STEPS:
         raise SolverFailedError(

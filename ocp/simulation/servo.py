@@ -249,9 +249,9 @@ def _modes_on_servo(servo: Servo) -> tuple[complex, ...]:
 
 def grows(servo: Servo) -> bool:
     """Whether structure and servo swing ever more, by their linear equations."""
-    values = np.array(_modes_on_servo(servo))
-    rounding = 1e-9 * np.abs(values).max()
-    return bool(values.real.max() > rounding)
+    values = _modes_on_servo(servo)
+    rounding = 1e-9 * max(map(abs, values))
+    return max(value.real for value in values) > rounding
 
 
 def held_mode(plant: Plant, place: float) -> Mode:

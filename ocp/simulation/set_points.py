@@ -73,7 +73,7 @@ def invert(
         np.append(row, np.full(longer, end))
         for row, end in zip((path.angle, path.acceleration, effort), ends)
     )
-    times = step * np.arange(len(place))
+    times = np.linspace(0.0, step * (len(place) - 1), len(place))
     stretch = _spline(times, servo.compliance * (torque - servo.rotor * acceleration))
     given = torque + servo.rotor * stretch(times, 2)
     motor = _spline(times, place + stretch(times))

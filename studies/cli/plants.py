@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, fields, replace
 from math import tau
+from typing import Any
 
 from rich.console import Console
 
@@ -64,7 +65,7 @@ def parameters_of(kind: Kind, settings: Iterable[tuple[str, str]]) -> dict[str, 
     return parse_parameters(kind.plant if isinstance(kind, Identified) else kind, settings)
 
 
-def build_plant(kind: Kind, values: Mapping[str, float]) -> Plant:
+def build_plant(kind: Kind, values: Mapping[str, Any]) -> Plant:
     """The plant with these values; of an identified machine it keeps the others."""
     if isinstance(kind, Robot):
         raise ValueError(ROBOT_IS_NO_PLANT)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quietarm.models import Plant, RobotOnPath
-from quietarm.models.dimensions import ACCELERATION, EFFORT, TORQUE
-from quietarm.models.drive import NUMBERS, unit_of
-from quietarm.models.joint_motion import LINEAR
+from quietarm.models.dimensions import ACCELERATION
 from quietarm.models.notes import about
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -20,7 +17,6 @@ from quietarm.ocp import (
     Plan,
     PointToPoint,
     ShapedCycloid,
-    SolverFailedError,
 )
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
 from quietarm.ocp.joint_words import figure_words
@@ -28,17 +24,17 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.choose_profile import CHOSEN, OF_SIX
-from quietarm.ocp.planning.cycle import Cycle
 from quietarm.ocp.planning.default_jerk import rise_time
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.rest import is_at_rest, rest_of
-from quietarm.ocp.simulation.servo import Mode
+from quietarm.views.report.drive_rows import cycle_rows, drive_rows
 from quietarm.views.report.robot_rows import way_rows
 from quietarm.views.report.words import (
     move_of,
     moved,
     residual_place,
+    signed_errors,
     state_words,
     unit_of_way,
 )
@@ -79,8 +75,8 @@ def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[R
         ("status", plan.status.text),
         _verified_row(plan),
         *_full_rows(plan),
-        *_drive_rows(plan),
-        *_cycle_rows(plan),
+        *drive_rows(plan),
+        *cycle_rows(plan),
         ("time", f"{plan.record.seconds:.2f} s"),
     ]
 
@@ -171,7 +167,7 @@ def worst_in_words(worst: JudgedMotion, tip_unit: str) -> str:
 
 
 def _signed(errors: Mapping[str, float]) -> str:
-    return ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
+    return signed_errors(errors)
 
 
 def _worst_of_plan(plan: Plan, worst: JudgedMotion) -> str:
@@ -221,113 +217,6 @@ def _full_rows(plan: Plan) -> list[Row]:
             f"whole equations, without modes and tables{remedy}",
         )
     ]
-
-
-def _drive_rows(plan: Plan) -> list[Row]:
-    """The drive, and what its simulation says of a plan; what is unknown of it is named."""
-    plant = plan.task.plant
-    drive = plant.drive
-    if drive is None:
-        return []
-    try:
-        figures = plan.candidate.on_drive
-    except SolverFailedError as error:
-        return [*drive_rows(plant), ("on the drive", f"warning: {error}")]
-    if figures is None:
-        return [*drive_rows(plant), ("on the drive", "not simulated: " + _LOOPS)]
-    way = "m" if plant.joint == LINEAR else "rad"
-    following = tip_words(figures.following_error, way)
-    off_path = tip_words(figures.off_path, way)
-    effort = EFFORT.of(plant.joint)
-    of_tip = "" if plant.joint == LINEAR else " of the tip from the joint"
-    heat = "" if figures.heat is None else f", {figures.heat:.4g} J of copper loss"
-    return [
-        *drive_rows(plant),
-        *_servo_rows(plan),
-        (
-            "on the drive",
-            f"{_tip(plan.task, figures.residual)} left{of_tip}, follows within {following}, the "
-            f"load is within {off_path} of the plan, peak {figures.peak_torque:.4g} {effort} with "
-            f"friction{heat}",
-        ),
-    ]
-
-
-def _cycle_rows(plan: Plan) -> list[Row]:
-    """Effort and energy of a cycle there and back, and what builds up over many."""
-    cycle = plan.cycles
-    if cycle is None:
-        return []
-    plant = plan.task.plant
-    shuttle = cycle.shuttle
-    effort = EFFORT.of(plant.joint)
-    torques = ", ".join(f"{torque:.4g}" for torque in cycle.rms_torques)
-    heat = "heat unknown without motor_constant in --drive"
-    if cycle.heat is not None:
-        heat = f"{cycle.heat:.4g} J ({cycle.heat / cycle.time:.4g} W) of copper loss"
-    worst = cycle.worst()
-    return [
-        (
-            "cycle",
-            f"there and back in {cycle.time:.4g} s with a dwell of {shuttle.dwell:g} s after each "
-            f"move: RMS {TORQUE.of(plant.joint)} {torques} {effort}, {heat}",
-        ),
-        (
-            "energy of a cycle",
-            f"{cycle.energy:.4g} J, or {cycle.energy_with_recovery:.4g} J where the DC link gives "
-            "back what the motor generates",
-        ),
-        (f"left in {_cycles(shuttle.repeat)}", _builds_up(plan.task, cycle)),
-        (f"if {_signed(worst.errors)}", _builds_up(plan.task, worst)),
-    ]
-
-
-def _cycles(count: int) -> str:
-    return "1 cycle" if count == 1 else f"{count} cycles"
-
-
-def _builds_up(task: PointToPoint, cycle: Cycle) -> str:
-    """How the vibration after each move changes from the first to the last."""
-    left = cycle.left
-    if is_at_rest(float(left.max()), task):
-        return f"at rest after each move (below {_tip(task, rest_of(task))})"
-    return (
-        f"{_tip(task, left[0])} after the first move, {_tip(task, left[-1])} after the last, "
-        f"{_tip(task, left.max())} at most"
-    )
-
-
-def _servo_rows(plan: Plan) -> list[Row]:
-    """How the plan accounts for the servo."""
-    held, moving = plan.candidate.modes_on_drive
-    words = f"{_hertz(held)} with the joint held, {_hertz(moving)} on the servo"
-    if plan.candidate.inverts_drive:
-        return [("set points", f"of the load's path through the drive; {words}")]
-    return [("set points", f"the planned path, as recorded on the moving servo; {words}")]
-
-
-def _hertz(mode: Mode) -> str:
-    return f"{mode.frequency / math.tau:.5g} Hz ({100 * mode.damping:.2g} %)"
-
-
-def drive_rows(plant: Plant) -> list[Row]:
-    """What is known of a plant's drive, and what is not."""
-    drive = plant.drive
-    if drive is None:
-        return []
-    known = [name for name in NUMBERS if name not in drive.unknown]
-    words = [
-        f"{name.replace('_', ' ')} {getattr(drive, name):.4g} {unit_of(name, plant.joint)}"
-        for name in known
-    ]
-    words.append(f"feed-forward {_FORWARD[drive.feedforward]}")
-    unknown = ", ".join(name.replace("_", " ") for name in drive.unknown)
-    rows = [("drive", ", ".join(words))]
-    return rows + ([("drive unknown", unknown)] if unknown else [])
-
-
-_FORWARD = {"acceleration": "of speed and acceleration", "speed": "of speed", "none": "none"}
-_LOOPS = "give position_loop and speed_loop"
 
 
 _LEFT = 1e-4

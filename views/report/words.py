@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -87,6 +87,11 @@ def plant_words(plant: Plant) -> str:
 def error_words(task: PointToPoint) -> str:
     """The ranges of the parameter errors of a task: "frequency +-10 %"; empty without any."""
     return ", ".join(f"{name} +-{100 * size:.3g} %" for name, size in task.ranges.items())
+
+
+def signed_errors(errors: Mapping[str, float]) -> str:
+    """Return relative errors by name, with their signs: "frequency -5 %"."""
+    return ", ".join(f"{name} {100 * error:+.3g} %" for name, error in errors.items())
 
 
 def moved(task: PointToPoint) -> str:

@@ -40,6 +40,7 @@ def test_what_builds_up_is_what_a_direct_simulation_of_all_moves_leaves(move):
     assert left.max() > 1.5 * left[0]
 
 
+@pytest.mark.slow
 def test_a_plan_at_rest_stays_at_rest_and_its_worst_case_is_a_corner():
     plan = qa.plan_move(qa.PointToPoint(AXIS, 0.8, 1.0))
     assert plan.cycle(0.3, 12).left.max() < 1e-6
@@ -103,3 +104,20 @@ def test_a_robot_goes_back_along_its_path_at_rest():
     plan = qa.plan_move(qa.PointToPoint(qa.DualLinkManipulator(), qa.deg(40), 0.9))
     assert plan.cycle(0.1, 3).left.max() < 1e-5
     assert_allclose(plan.cycle(0.1).legs[1].moving.path.angle[-1], 0.0, atol=1e-12)
+
+
+@pytest.mark.slow
+def test_cycles_on_a_drive_begin_as_a_move_and_build_up_as_the_structure_on_its_servo_does(move):
+    """Twelve moves at 5 % too low a frequency: docs/servo.md has what a machine leaves."""
+    drive = Drive(position_loop=60, speed_loop=40, reset_time=0.03, compliance=1 / 6e6, rotor=18)
+    moved = move.on(replace(move.task, plant=replace(AXIS, drive=drive)))
+    error = {"frequency": -0.05}
+    left = moved.cycle(0.3, 6, error).on_drive()
+    run = moved.candidate.perturbed(error).run_on_drive()
+    first = (run.time >= 1.0) & (run.time < 1.3)
+    tip = run.tips[0][first] + run.load[first] - 0.8
+    assert left[0] == pytest.approx(np.abs(tip).max(), rel=1e-3)
+    assert len(left) == 12
+    assert left.max() > 1.5 * left[0]
+    assert move.cycle(0.3, 6).on_drive() is None
+    assert moved.cycle(0.0, 6).on_drive() is None

@@ -1,5 +1,6 @@
 """A plant on its drive: the simulation against closed forms, and set points by which it follows."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -64,6 +65,7 @@ def plain_move(plant, span=0.8, duration=1.0):
     return qa.evaluate_coefficients(qa.PointToPoint(plant, span, duration), [])
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("forward", ["acceleration", "speed", "none"])
 def test_a_cascaded_servo_answers_as_its_linear_equations_do(forward):
     """Motor, carriage and a swinging load in a matrix, by scipy.signal: no line of quietarm's."""
@@ -136,6 +138,7 @@ def off_path(plan):
     return np.abs(run.load[moving] - plan.path(run.time[moving])).max()
 
 
+@pytest.mark.slow
 def test_a_link_that_turns_follows_the_planned_path_by_its_set_points():
     drive = Drive(position_loop=30, speed_loop=20, reset_time=0.05)
     plain = qa.SingleLinkManipulator()
@@ -187,6 +190,7 @@ def test_coulomb_friction_is_in_torque_energy_and_work():
     assert back.candidate.moving.torques[0].min() == pytest.approx(-rubbing.figures.peak_torque)
 
 
+@pytest.mark.slow
 def test_a_perturbed_motion_is_judged_on_its_drive_with_the_nominal_set_points():
     moved = plain_move(gantry())
     error = moved.candidate.perturbed({"frequency": 0.05})
@@ -232,3 +236,27 @@ def test_a_drive_that_does_not_fit_its_plant_is_refused():
     slow = replace(GANTRY, dead_time=0.02)
     with pytest.raises(qa.ocp.SolverFailedError, match="the servo does not hold the plant"):
         plain_move(gantry(drive=slow)).candidate.on_drive  # noqa: B018
+
+
+def test_a_plant_of_a_users_file_keeps_its_drive_in_another_process(tmp_path):
+    """Workers get plants of files by name and entries: the drive is one of these."""
+    lines = (
+        "from dataclasses import dataclass",
+        "from quietarm.models import LinearAxis",
+        "@dataclass(frozen=True)",
+        "class Gantry(LinearAxis):",
+        "    name = 'gantry of a file'",
+    )
+    (tmp_path / "gantry.py").write_text("\n".join(lines))
+    kinds = qa.models.load_plant_file(tmp_path / "gantry.py")
+    plant = kinds["gantry of a file"](drive=GANTRY)
+    assert pickle.loads(pickle.dumps(plant)) == plant
+
+
+@pytest.mark.parametrize("limit", [40.0, (-40.0, 400.0), {"joint": 40.0}])
+def test_a_limit_that_dry_friction_takes_whole_is_refused(limit):
+    with pytest.raises(
+        ValueError, match=r"force limit is 40 N and dry friction takes 45 N; give a"
+    ):
+        qa.PointToPoint(gantry(), -0.8, 1.0, torque_limit=limit)
+    assert qa.PointToPoint(gantry(), 0.8, 1.0, torque_limit=46.0).plant.drive == GANTRY

@@ -37,6 +37,7 @@ def test_an_answer_is_judged_on_its_drive_and_says_what_is_unknown(call):
     assert float(last["position_m"]) == pytest.approx(0.25)
 
 
+@pytest.mark.slow
 def test_without_loops_there_is_no_simulation(call):
     _, out, _ = call(f"{AXIS} --drive friction_load=5N")
     assert "not simulated: give position_loop and speed_loop" in out
@@ -74,6 +75,7 @@ def test_what_is_wrong_is_said_in_one_line(refused, typed, words):
     assert words in refused(f"{line} {typed}")
 
 
+@pytest.mark.slow
 def test_a_servo_that_does_not_hold_the_plant_is_warned_of_beside_the_plan(call):
     code, out, _ = call(f"{AXIS} --drive position_loop=90/s,speed_loop=60Hz,dead_time=20ms")
     assert code == 0
