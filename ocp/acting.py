@@ -14,7 +14,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import product
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,10 +25,12 @@ from scipy.optimize import brentq, minimize_scalar
 
 from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.checks import numbers, positive, takes
-from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.simulation.free_vibration import FreeVibration, vibration_of
 from quietarm.ocp.simulation.mesh import ROLLOUT_STEPS, default_steps
 from quietarm.ocp.uncertainty import perturb_plant
+
+if TYPE_CHECKING:
+    from quietarm.ocp.judged_motion import JudgedMotion
 
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]
@@ -62,7 +66,32 @@ class Acting:
     errors: Mapping[str, float] = field(hash=False)
 
 
-@takes(motion=JudgedMotion)
+class ActingMotion:
+    """A motion of a task that CVODES has judged, as it is asked when its tool may act."""
+
+    example: ClassVar[str] = (
+        "a motion, as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
+    )
+
+    @cached_property
+    def acting(self) -> Acting | None:
+        """When the tip stays within the task's band in the worst case; None without a band."""
+        motion: Any = self
+        if motion.task.band is None:
+            return None
+        return worst_time_to_act(motion, motion.task.band, motion.task.ranges)
+
+    @property
+    def acts_after(self) -> float:
+        """Time from the motion's start until the tip stays within the task's band [s].
+
+        In the worst case of an uncertain task; infinite where it never does, and no number where
+        the task has no band.
+        """
+        return math.nan if self.acting is None else self.acting.after
+
+
+@takes(motion=ActingMotion)
 def time_to_act(motion: JudgedMotion, band: float) -> float:
     """Return the time until the tip stays within a band about its target [s], on a motion's plant.
 
@@ -265,7 +294,7 @@ def _on_the_way(motion: JudgedMotion) -> tuple[Array, Array] | None:
     return None if rows is None else (motion.times, rows)
 
 
-@takes(motion=JudgedMotion)
+@takes(motion=ActingMotion)
 def worst_time_to_act(motion: JudgedMotion, band: float, ranges: Mapping[str, float]) -> Acting:
     """Return the latest time to act within ranges of errors, with the errors for which it is.
 
