@@ -14,19 +14,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import product
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq, minimize_scalar
 
 from quietarm.models.one_thread import on_one_thread
 from quietarm.ocp.checks import numbers, positive, takes
-from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.simulation.free_vibration import FreeVibration, vibration_of
 from quietarm.ocp.simulation.mesh import ROLLOUT_STEPS, default_steps
 from quietarm.ocp.uncertainty import perturb_plant
+
+if TYPE_CHECKING:
+    from quietarm.ocp.judged_motion import JudgedMotion
 
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]
@@ -62,7 +64,32 @@ class Acting:
     errors: Mapping[str, float] = field(hash=False)
 
 
-@takes(motion=JudgedMotion)
+class ActingMotion:
+    """A motion of a task that CVODES has judged, as it is asked when its tool may act."""
+
+    example: ClassVar[str] = (
+        "a motion, as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
+    )
+
+    @cached_property
+    def acting(self) -> Acting | None:
+        """When the tip stays within the task's band in the worst case; None without a band."""
+        motion: Any = self
+        if motion.task.band is None:
+            return None
+        return worst_time_to_act(motion, motion.task.band, motion.task.ranges)
+
+    @property
+    def acts_after(self) -> float:
+        """Time from the motion's start until the tip stays within the task's band [s].
+
+        In the worst case of an uncertain task; infinite where it never does, and no number where
+        the task has no band.
+        """
+        return math.nan if self.acting is None else self.acting.after
+
+
+@takes(motion=ActingMotion)
 def time_to_act(motion: JudgedMotion, band: float) -> float:
     """Return the time until the tip stays within a band about its target [s], on a motion's plant.
 
@@ -136,7 +163,7 @@ def act_after_arrival(vibration: FreeVibration, state: ArrayLike, band: float) -
         end *= 2
         if not math.isfinite(end):
             return math.inf
-    end = float(brentq(lambda time: envelope(time) - band, 0.0, end)) + step
+    end = _root(lambda time: envelope(time) - band, 0.0, end) + step
     while end > 0:
         begin = max(0.0, end - _AT_ONCE * step)
         overlap = min(begin, 2 * step)
@@ -223,6 +250,8 @@ def _by_samples(times: Array, rows: Array, band: float, in_space: bool) -> float
 
 
 def _splined(times: Array, rows: Array, in_space: bool) -> Distance:
+    from scipy.interpolate import CubicSpline  # takes a quarter of a second to load
+
     spline = CubicSpline(times, rows, axis=1)
     return lambda at: _distances(spline(at), in_space)
 
@@ -244,17 +273,36 @@ def _last_beyond(distance: Distance, times: Array, band: float) -> float | None:
     inner = np.arange(max(last + 1, 1), len(times) - 1)
     is_peak = (sizes[inner] >= sizes[inner - 1]) & (sizes[inner] >= sizes[inner + 1])
     for place in reversed(inner[is_peak & (sizes[inner] > (1 - _NEAR) * band)].tolist()):
-        around = (times[place - 1], times[place + 1])
-        top = minimize_scalar(
-            lambda time: -beyond(time), bounds=around, method="bounded", options={"xatol": 1e-12}
-        )
-        if -top.fun > 0:
-            return float(brentq(beyond, float(top.x), times[place + 1]))
+        before, after = float(times[place - 1]), float(times[place + 1])
+        top = _peak(beyond, before, after)
+        if beyond(top) > 0:
+            return _root(beyond, top, after)
     if last < 0:
         return None
     if last + 1 == len(times):
         return float(times[-1])
-    return float(brentq(beyond, times[last], times[last + 1]))
+    return _root(beyond, float(times[last]), float(times[last + 1]))
+
+
+def _root(function: Callable[[float], float], begin: float, end: float) -> float:
+    """Where a function changes its sign between two times."""
+    from scipy.optimize import brentq  # takes a quarter of a second to load
+
+    found: Any = brentq(function, begin, end)
+    return float(found)
+
+
+def _peak(function: Callable[[float], float], begin: float, end: float) -> float:
+    """Where a function is largest between two times, of which it has one peak."""
+    from scipy.optimize import minimize_scalar
+
+    found: Any = minimize_scalar(
+        lambda time: -function(time),
+        bounds=(begin, end),
+        method="bounded",
+        options={"xatol": 1e-12},
+    )
+    return float(found.x)
 
 
 def _on_the_way(motion: JudgedMotion) -> tuple[Array, Array] | None:
@@ -265,7 +313,7 @@ def _on_the_way(motion: JudgedMotion) -> tuple[Array, Array] | None:
     return None if rows is None else (motion.times, rows)
 
 
-@takes(motion=JudgedMotion)
+@takes(motion=ActingMotion)
 def worst_time_to_act(motion: JudgedMotion, band: float, ranges: Mapping[str, float]) -> Acting:
     """Return the latest time to act within ranges of errors, with the errors for which it is.
 

@@ -12,13 +12,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import JointMotion, Plant
+from quietarm.ocp.acting import ActingMotion
 from quietarm.ocp.checks import numbers, quoted, takes
 from quietarm.ocp.figures import Figures
 from quietarm.ocp.limits import OF_THIRD_ORDER, RESIDUAL, Quantity
@@ -39,12 +40,9 @@ from quietarm.ocp.simulation.trajectory import Trajectory, extremes, outputs_of
 from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import perturb_plant
 
-if TYPE_CHECKING:
-    from quietarm.ocp.acting import Acting
-
 
 @dataclass(frozen=True, eq=False)
-class JudgedMotion:
+class JudgedMotion(ActingMotion):
     """A motion of a task, evaluated by CVODES; each quantity is computed when it is first read.
 
     For an uncertain task residual and deflection are the largest over the scenarios; all else is of
@@ -147,24 +145,6 @@ class JudgedMotion:
     def motion(self) -> Figures:
         """The same, by the name that they had in 2.0."""
         return self.figures
-
-    @cached_property
-    def acting(self) -> Acting | None:
-        """When the tip stays within the task's band in the worst case; None without a band."""
-        from quietarm.ocp.acting import worst_time_to_act  # which needs this class
-
-        if self.task.band is None:
-            return None
-        return worst_time_to_act(self, self.task.band, self.task.ranges)
-
-    @property
-    def acts_after(self) -> float:
-        """Time from the motion's start until the tip stays within the task's band [s].
-
-        In the worst case of an uncertain task; infinite where it never does, and no number where
-        the task has no band.
-        """
-        return math.nan if self.acting is None else self.acting.after
 
     @property
     def net_work(self) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,7 +192,12 @@ def time_front(
         )
     points = whole("points", points, 2, 1000)
     began = time.perf_counter()
-    settings = {"residual_limit": residual_limit, "bound": bound, "seed": seed, "solver": solver}
+    settings: dict[str, Any] = {
+        "residual_limit": residual_limit,
+        "bound": bound,
+        "seed": seed,
+        "solver": solver,
+    }
     fastest = fastest_move(task, **settings).plan
     shortest = fastest.task.duration
     longest = LONGEST * shortest if longest is None else positive("longest duration", longest, "s")

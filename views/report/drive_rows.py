@@ -12,6 +12,7 @@ from quietarm.models.drive import NUMBERS, unit_of
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp import Plan, PointToPoint, SolverFailedError
 from quietarm.ocp.planning.cycle import Cycle
+from quietarm.ocp.rest import rest_of
 from quietarm.ocp.simulation.servo import Mode
 from quietarm.views.report.words import signed_errors
 from quietarm.views.tips import tip_words
@@ -105,7 +106,7 @@ def _cycles(count: int) -> str:
 
 def _builds_up(task: PointToPoint, left: np.ndarray) -> str:
     """How the vibration after each move changes from the first to the last."""
-    rest = REST * task.smallness
+    rest = rest_of(task)
     unit = task.plant.tip_unit
     if left.max() < rest:
         return f"at rest after each move (below {tip_words(rest, unit)})"

@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.modes import sag_at
@@ -40,6 +39,8 @@ class TipWay:
     def __init__(
         self, robot: MovingRobot, path: GeometricPath, stiffness: float, payload: float
     ) -> None:
+        from scipy.interpolate import CubicSpline  # takes a quarter of a second to load
+
         dynamics = robot.dynamics_with(stiffness, payload)
         self._directions = list(tables_of(robot, path).directions)
         x = ca.SX.sym("x", dynamics.size)
