@@ -31,14 +31,14 @@ def export_plan(
         called.
     path : str or Path
         The file, whose ending is the format: a table (.csv), C source (.c, with its header beside
-        it), a JointTrajectory of ROS 2 (.yaml) or a RobotTrajectory of MoveIt (.moveit), MATLAB v5 (.mat), a film (.gif, .mp4), a page
-        (.html), or a format of one's own (`ExportFormat`).
+        it), a JointTrajectory of ROS 2 (.yaml) or a RobotTrajectory of MoveIt (.moveit), MATLAB v5
+        (.mat), a film (.gif, .mp4), a page (.html), or a format of one's own (`ExportFormat`).
     **settings : Any
         What the format may be told, by name. Of a table ``columns``, with units
         (``"time:ms,angle:deg,torque"``; a robust plan has a column ``tip`` for every scenario); of
         tables and trajectories ``rate``, rows in a second [Hz]; of a trajectory ``joint``, the
-        joint's name, and ``thin``; of a film ``speed``, ``deflection_scale``, ``width`` and ``rate``; of a page
-        ``deflection_scale``.
+        joint's name, and ``thin``; of a film ``speed``, ``deflection_scale``, ``width`` and
+        ``rate``; of a page ``deflection_scale``.
 
     Returns
     -------
