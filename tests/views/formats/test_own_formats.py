@@ -81,4 +81,4 @@ def test_what_a_format_returns_is_checked(cycloid, tmp_path):
 def test_the_order_of_formats_does_not_depend_on_what_was_loaded_first():
     kind = define(name="a")
     names = list(known_formats())
-    assert names == ["c", "csv", "gif", "html", "mat", "mp4", "ros", kind.name]
+    assert names == ["c", "csv", "gif", "html", "mat", "mp4", "robot-trajectory", "ros", kind.name]
