@@ -12,12 +12,11 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.interrupts import interruptible
 from quietarm.models import Expression, GeometricPath, JointMotion, Robot
 from quietarm.models.robot.on_path.full import RobotInTime
 from quietarm.models.robot.path.geometric_path import USUAL_TOLERANCE
 from quietarm.models.robot.path.timed_motion import TimedMotion
-from quietarm.ocp.checks import instance, positive
+from quietarm.ocp.checks import instance, positive, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
 from quietarm.ocp.errors import QuietarmError
 from quietarm.ocp.planning.plan import Plan, evaluate_coefficients
@@ -161,7 +160,7 @@ _STILL = 2e-5
 """What nobody sees [m]."""
 
 
-@interruptible
+@takes(energy=Energy)
 def evaluate_as_timed(
     robot: Robot,
     trajectory: TimedMotion | str | Path,

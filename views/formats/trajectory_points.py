@@ -57,7 +57,10 @@ def left_between(plan: Plan, times: Array) -> str:
     return f"{count} {left} by the whole equations, and the plan {of_plan}"
 
 
-def _moving(plan: Plan, times: Array) -> list[Array]:
+def _moving(plan: Plan, times: Array) -> tuple[Array, Array, Array]:
     """Positions, speeds and accelerations of all joints, shape (times, joints)."""
     joints = plan.sampled(times).sample.joints
-    return [np.column_stack([joint[order] for joint in joints]) for order in range(3)]
+    points, speeds, accelerations = (
+        np.column_stack([joint[order] for joint in joints]) for order in range(3)
+    )
+    return points, speeds, accelerations

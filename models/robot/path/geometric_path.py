@@ -346,7 +346,7 @@ class GeometricPath:
         spline = partial(_natural, degree=degree)
         kept, places = fewest_within(points, _WITHIN * tolerance, spline, most)
         if len(kept):
-            path = cls.through(points[kept], at=places, degree=degree, joints=joints)
+            path = cls.through(points[kept], at=places.tolist(), degree=degree, joints=joints)
             return path, f"through {len(kept)} of {{}} points"
         if 2 * len(corners) > MOST_WAYPOINTS:
             raise ValueError(
@@ -536,11 +536,9 @@ def _check_turns(points: Array) -> None:
 
 def _few_lines(points: Array, tolerance: float) -> Array:
     """Points whose lines are those of all, by a small share of a tolerance."""
-    for share in _SHARES:
-        lines = vertices_within(points, share * tolerance)
-        if len(lines) <= _MOST_LINES:
-            return lines
-    return lines
+    several = (vertices_within(points, share * tolerance) for share in _SHARES)
+    few = next((lines for lines in several if len(lines) <= _MOST_LINES), None)
+    return vertices_within(points, _SHARES[-1] * tolerance) if few is None else few
 
 
 def _row(name: str, values: ArrayLike) -> Array:
