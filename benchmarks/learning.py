@@ -28,7 +28,7 @@ from parts.measuring import console, machine, timed
 from quietarm import Plan, QuietarmError, Recording, learn, plan_move
 
 RESULTS = Path(__file__).parent / "results" / "learning.csv"
-REST = 2.5
+REST = 1.2
 """Seconds that are recorded after a move."""
 EVERY = 4
 """Ticks of the servo between two samples of a recording."""

@@ -25,7 +25,7 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.executed import History
+from quietarm.ocp.planning.executed import MoveHistory
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
 from quietarm.ocp.record import REST, Record, Setting, Verification
@@ -67,7 +67,7 @@ class Plan(MotionAnswer):
         Decrease of the least energy per unit of a widened limit [J by the limit's unit]: sums of
         multipliers, by the limit's name. Of the residual also if rest on arrival was required;
         empty if nothing was optimised.
-    learned : History or None
+    learned : MoveHistory or None
         The executed moves that it was learned from by `quietarm.learn`; None of any other plan.
     """
 
@@ -84,7 +84,7 @@ class Plan(MotionAnswer):
     steps: CountFromOne
     residual_limit: NotNegative | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
-    learned: History | None = field(default=None, metadata=IF_STATED)
+    learned: MoveHistory | None = field(default=None, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}
