@@ -73,7 +73,7 @@ toc_object_entries_show_parents = "hide"
 napoleon_numpy_docstring, napoleon_google_docstring = True, False
 suppress_warnings = ["ref.python"]  # a shape as (points, 2) looks like a name
 _ROOMS = {
-    "machine": {"identify": "Identification"},
+    "machine": {"identify": "Identification", "learn": "Learning"},
     "views": {"pictures": "Pictures"},
     "studies": {"sweep": "Grids of moves", "bench": "Benches", "compare": "Comparison"},
 }

@@ -19,7 +19,7 @@ from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.recording import Recording
 from quietarm.models import Plant
 from quietarm.ocp.judged_motion import JudgedMotion
-from quietarm.ocp.planning.executed import Executed, History
+from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.record import versions
 
@@ -69,13 +69,13 @@ def evidence_of(plan: Plan, read: Sequence[ReadMove]) -> Evidence:
     return Evidence(plan, _history_with(plan, after), read)
 
 
-def _history_with(plan: Plan, read: Sequence[AfterMove]) -> History:
+def _history_with(plan: Plan, read: Sequence[AfterMove]) -> MoveHistory:
     """The history of a plan with what was measured of it now."""
     plant = plan.task.plant
     model = {name: getattr(plant, name) for name in modal_names(plant)}
-    history = plan.learned or History(wanted=plan.task.final, model=model)
+    history = plan.learned or MoveHistory(wanted=plan.task.final, model=model)
     measured = tuple(one.measured for one in read)
-    now = Executed(plan.profile, plan.coefficients, plan.task.move, measured)
+    now = ExecutedMove(plan.profile, plan.coefficients, plan.task.move, measured)
     *before, last = [*history.moves, None] if not history.moves else history.moves
     if last is not None and _same_motion(last, now):
         now = replace(now, measured=(*last.measured, *measured))
@@ -83,7 +83,7 @@ def _history_with(plan: Plan, read: Sequence[AfterMove]) -> History:
     return replace(history, moves=(*history.moves, now))
 
 
-def _same_motion(first: Executed, second: Executed) -> bool:
+def _same_motion(first: ExecutedMove, second: ExecutedMove) -> bool:
     return (first.profile, first.coefficients, first.move) == (
         second.profile, second.coefficients, second.move,
     )  # fmt: skip
@@ -96,13 +96,13 @@ class Evidence:
     ----------
     plan : Plan
         That was executed last.
-    history : History
+    history : MoveHistory
         All moves, the last one with it.
     read : sequence of ReadMove
         What was read of the last one.
     """
 
-    def __init__(self, plan: Plan, history: History, read: Sequence[ReadMove]) -> None:
+    def __init__(self, plan: Plan, history: MoveHistory, read: Sequence[ReadMove]) -> None:
         self._plan = plan
         self.history = history
         self._read = read
@@ -218,7 +218,7 @@ class Evidence:
 
     # The arrival
 
-    def _motion(self, move: Executed, plant: Plant) -> JudgedMotion:
+    def _motion(self, move: ExecutedMove, plant: Plant) -> JudgedMotion:
         """An executed move on a plant."""
         start, target, duration = move.move
         task = replace(

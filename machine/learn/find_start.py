@@ -56,7 +56,8 @@ def find_start(plan: Plan, recording: Recording) -> Start:
     Raises
     ------
     ValueError
-        When the recording is shorter than the move, of another move, or by another clock.
+        When the recording is shorter than the move, of another move or of one that an earlier plan
+        made, or by another clock.
     """
     duration = plan.task.duration
     lasts = float(np.ptp(recording.time))
@@ -76,7 +77,9 @@ def find_start(plan: Plan, recording: Recording) -> Start:
             f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
         )
     lag, explained = search.refined(lag)
-    search.refuse_stretched(recording.name, lag, explained)
+    _refuse_earlier(plan, recording, Start(lag, signal, explained))
+    # a joint follows the plan closely, and a tip swings beside it
+    search.refuse_stretched(recording.name, lag, explained, 1e-6 if signal == "angle" else 1e-4)
     if signal == "angle":
         _check_way(plan, recording.name, float(search.sizes(lag)[0]))
     return Start(lag, signal, explained)
@@ -133,7 +136,7 @@ def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
     )
 
 
-def refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
+def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
     """ValueError where a recording is of an earlier move of a plan's history, not of the plan."""
     far_better = 0.2  # times what the plan leaves unexplained
     if start.signal not in ("angle", "tip") or plan.learned is None:
@@ -251,17 +254,19 @@ class _Search:
         found: Any = _least(lambda x: self._unexplained(lag + step * x[0], 1.0), 1)
         return lag + step * float(found.x[0]), 1 - float(found.fun)
 
-    def refuse_stretched(self, name: str, lag: float, explained: float) -> None:
-        """ValueError where the move is met far better by a clock that is off by some per cent."""
+    def refuse_stretched(self, name: str, lag: float, explained: float, met: float) -> None:
+        """ValueError where a clock that is off by some per cent meets the move, and the plan's not.
+
+        A move is met where no more than a share is unexplained.
+        """
         step = float(self._at[1] - self._at[0])
         per_cent = 1e-2
-        far_better = 0.1
-        least = 1e-3  # of what is unexplained, from which on a clock is doubted
-        if 1 - explained < least:
+        not_met = 10 * met
+        if 1 - explained < not_met:
             return
         found: Any = _least(lambda x: self._unexplained(lag + step * x[0], 1 + per_cent * x[1]), 2)
         stretch = 1 + per_cent * float(found.x[1])
-        if abs(stretch - 1) > per_cent and found.fun < min(far_better * (1 - explained), least):
+        if abs(stretch - 1) > per_cent and found.fun < met:
             raise ValueError(_other_clock(name, stretch, self._duration))
 
     def _unexplained(self, lag: float, stretch: float) -> float:
@@ -274,12 +279,12 @@ class _Search:
 
     def refuse_other_clock(self, name: str, explained: float) -> None:
         """ValueError where the move is met by a clock that runs faster or slower."""
-        met = 0.98
+        far_better = 0.1
         longest = float(np.ptp(self._time)) / self._duration
         stretches = [s for s in np.geomspace(0.2, 5, 65) if s < longest]
         found = [(self.best(s)[1], s) for s in stretches]
         best, stretch = max(found, default=(0.0, 1.0))
-        if best > met and best > explained + 0.05:
+        if 1 - best < far_better * (1 - explained):
             raise ValueError(_other_clock(name, float(stretch), self._duration))
 
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
 from quietarm.machine.learn.evidence import ReadMove, evidence_of, is_by_joint
-from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_earlier
+from quietarm.machine.learn.find_start import find_start, off_the_path
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
@@ -123,7 +123,6 @@ def _read(plan: Plan, recording: Recording) -> ReadMove:
     """The start and the swing of one recording."""
     task = plan.task
     found = find_start(plan, recording)
-    refuse_earlier(plan, recording, found)
     doubt = off_the_path(plan, recording, found)
     start = found.time
     arrival = start + task.duration

@@ -22,7 +22,7 @@ from quietarm.machine.learn.read_swing import AfterMove, modal_names, read_swing
 from quietarm.machine.recordings.fitted_spline import fit_spline
 from quietarm.machine.recordings.recording import Recording, noise_of
 from quietarm.models import Plant
-from quietarm.ocp.planning.executed import Measured, Swing
+from quietarm.ocp.planning.executed import ArrivalSwing, RecordedArrival
 
 Array = NDArray[np.float64]
 
@@ -173,14 +173,14 @@ def swing_by_joint(
         for name, deviation in part.deviations.items()
     }
     part = replace(part, deviations=deviations)
-    measured = Measured(recording.name, tuple(swings), part.values, part.deviations)
+    measured = RecordedArrival(recording.name, tuple(swings), part.values, part.deviations)
     notes = (f"warning: {recording.name}: {part.warning}",) if part.warning else ()
     return AfterMove(measured, part if part.values else None, notes)
 
 
 def _swings(
     recording: Recording, arrival: float, plant: Plant, place: float
-) -> tuple[Array, list[Swing]]:
+) -> tuple[Array, list[ArrivalSwing]]:
     """The tip's displacement that the recorded motion makes, and the swing of every mode in it."""
     rows = len(recording.time)
     seen = Recording(

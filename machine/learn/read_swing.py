@@ -20,7 +20,7 @@ from quietarm.machine.identify.swings.swing_changes import has_changes, with_cha
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.recording import Recording, noise_of
 from quietarm.models import Plant
-from quietarm.ocp.planning.executed import Measured, Swing
+from quietarm.ocp.planning.executed import ArrivalSwing, RecordedArrival
 from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ class AfterMove:
 
     Attributes
     ----------
-    measured : Measured
+    measured : RecordedArrival
         For the history.
     part : Part or None
         The ring-down, as `identify` fits it; None where the swing is lost in the noise.
@@ -52,7 +52,7 @@ class AfterMove:
         modes, friction, the servo; 0 of an accelerometer.
     """
 
-    measured: Measured
+    measured: RecordedArrival
     part: Part | None
     notes: tuple[str, ...] = ()
     other: float = 0.0
@@ -135,7 +135,7 @@ def read_swing(
         swings = _at_arrival(fitter, fitted, p, arrival, place)
     values = dict(part.values) if part else {}
     deviations = dict(part.deviations) if part else {}
-    measured = Measured(recording.name, tuple(swings), values, deviations)
+    measured = RecordedArrival(recording.name, tuple(swings), values, deviations)
     return AfterMove(measured, part, _notes(fitter, fitted, part), _other(fitter, fitted, p))
 
 
@@ -217,7 +217,7 @@ def _refuse_clipped(fitter: PartFitter, part: Part) -> None:
 
 def _at_arrival(
     fitter: PartFitter, part: Part, p: Array, arrival: float, place: float
-) -> list[Swing]:
+) -> list[ArrivalSwing]:
     """Amplitude and phase of every mode at arrival, by its first periods with some parameters."""
     plant = with_values(fitter.plant, dict(zip(fitter.names, p.tolist())))
     modes = TipModes(plant, place)
@@ -239,7 +239,7 @@ def _at_arrival(
     deviation = deviation * np.abs(scale)
     weights = modes.tips.conj() / (np.abs(modes.tips) ** 2).sum(axis=0)
     amplitudes = (weights * by_signal).sum(axis=0)
-    return [Swing.of(complex(a), float(d)) for a, d in zip(amplitudes, deviation)]
+    return [ArrivalSwing.of(complex(a), float(d)) for a, d in zip(amplitudes, deviation)]
 
 
 def _deviation(model: SwingModel, x: Array, modes: TipModes) -> Array:

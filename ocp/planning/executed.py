@@ -16,7 +16,7 @@ from quietarm.ocp.task import ModalState
 
 
 @dataclass(frozen=True)
-class Swing:
+class ArrivalSwing:
     """How one mode swung at arrival, by the displacement of the tip that it moves most.
 
     Attributes
@@ -39,7 +39,7 @@ class Swing:
         object.__setattr__(self, "phase", finite("phase of a swing", self.phase, "rad"))
 
     @classmethod
-    def of(cls, complex_amplitude: complex, deviation: float) -> Swing:
+    def of(cls, complex_amplitude: complex, deviation: float) -> ArrivalSwing:
         """The swing whose displacement is the real part of this at arrival."""
         return cls(abs(complex_amplitude), cmath.phase(complex_amplitude), float(deviation))
 
@@ -50,14 +50,14 @@ class Swing:
 
 
 @dataclass(frozen=True)
-class Measured:
+class RecordedArrival:
     """What one recording of an executed move tells.
 
     Attributes
     ----------
     recording : str
         Its name.
-    swings : tuple of Swing
+    swings : tuple of ArrivalSwing
         Of every mode of the plant at arrival, the slowest first.
     values, deviations : mapping of str to float
         The plant's parameters by this recording alone, and their standard deviations; empty where
@@ -65,14 +65,14 @@ class Measured:
     """
 
     recording: str
-    swings: tuple[Swing, ...]
+    swings: tuple[ArrivalSwing, ...]
     values: Mapping[str, float] = field(default_factory=dict, hash=False)
     deviations: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         swings = tuple(several("swings", self.swings, "swings, one for each mode"))
         for swing in swings:
-            instance("a swing", swing, Swing)
+            instance("a swing", swing, ArrivalSwing)
         object.__setattr__(self, "swings", swings)
         for name in ("values", "deviations"):
             numbers = {
@@ -88,7 +88,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Executed:
+class ExecutedMove:
     """A move that a machine made, once or several times.
 
     Attributes
@@ -99,23 +99,23 @@ class Executed:
         The profile's.
     move : tuple of float
         Start, target and duration [rad, s], of a linear joint in metres.
-    measured : tuple of Measured
+    measured : tuple of RecordedArrival
         What each recording of it tells.
     """
 
     profile: JointProfile
     coefficients: tuple[float, ...]
     move: tuple[float, float, float]
-    measured: tuple[Measured, ...]
+    measured: tuple[RecordedArrival, ...]
 
 
 @dataclass(frozen=True)
-class History:
+class MoveHistory:
     """The moves that a plan was learned from, the first one first, and what arrival was wanted.
 
     Attributes
     ----------
-    moves : tuple of Executed
+    moves : tuple of ExecutedMove
         Of one task on one machine.
     wanted : ModalState or None
         The state on arrival that was asked for before anything was learned; None is rest.
@@ -125,7 +125,7 @@ class History:
 
     example: ClassVar[str] = "the history of a plan that learn made"
 
-    moves: tuple[Executed, ...] = ()
+    moves: tuple[ExecutedMove, ...] = ()
     wanted: ModalState | None = None
     model: Mapping[str, float] = field(default_factory=dict, hash=False)
 

@@ -24,7 +24,7 @@ from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.cycle import Cycle, Shuttle
-from quietarm.ocp.planning.executed import History
+from quietarm.ocp.planning.executed import MoveHistory
 from quietarm.ocp.planning.move_table import USUAL_RATE, move_csv, ticks_of_move
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointPath, JointProfile
@@ -70,7 +70,7 @@ class Plan(MotionAnswer):
         empty if nothing was optimised.
     shuttle : Shuttle or None
         The cycles that the plan is reported for, there and back; None where none were asked for.
-    learned : History or None
+    learned : MoveHistory or None
         The executed moves that it was learned from by `quietarm.learn`; None of any other plan.
     """
 
@@ -88,7 +88,7 @@ class Plan(MotionAnswer):
     residual_limit: NotNegative | None = None
     shadow_prices: Mapping[str, float] = field(default_factory=dict, hash=False)
     shuttle: Shuttle | None = field(default=None, metadata=IF_STATED)
-    learned: History | None = field(default=None, metadata=IF_STATED)
+    learned: MoveHistory | None = field(default=None, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         prices = {name: float(price) for name, price in sorted(self.shadow_prices.items())}

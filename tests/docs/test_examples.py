@@ -29,6 +29,7 @@ pytestmark = pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
 (SHORT,) = blocks("README", "python")
 MOVE, ENERGY = blocks("moves", "python")
 (MACHINE,) = blocks("machine", "python")
+(LEARN,) = blocks("learn", "python")
 (CELL,) = blocks("sweeps", "python")
 (BEGUN,) = blocks("start", "python")
 PROFILE = shown_file("extend", "minimum_jerk.py")
@@ -206,7 +207,7 @@ def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 27
+    assert sum(len(blocks(page, "python")) for page in others) == 28
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 
@@ -261,7 +262,7 @@ def follow(tmp_path, capfd, monkeypatch, quick_pictures):
         yield run
 
 
-ELSEWHERE = (STARTED, "explore", "machine", "gallery", "start")
+ELSEWHERE = (STARTED, "explore", "machine", "learn", "gallery", "start")
 """The page of explore stays until Ctrl-C: tests/views/page opens it. The gallery's commands
 make its pictures: test_pictures.py."""
 CALLED = [name for name in COMMAND_BLOCKS if not name.startswith(ELSEWHERE)]
@@ -324,3 +325,14 @@ def test_the_machine_of_the_page_is_the_one_that_was_recorded(run_python, follow
     duration = float(re.findall(r"duration of the first is ([\d.]+) s", PAGES["machine"])[0])
     printed_duration = float(re.findall(r"0 to 60 deg in ([\d.]+) s", fastest)[0])
     assert printed_duration == pytest.approx(duration, rel=0.01)
+
+
+@pytest.mark.slow
+def test_the_moves_of_the_page_are_learned_from(run_python, follow):
+    of_page, said = blocks("learn", "text")
+    left = [float(mm) for mm in re.findall(r"left ([\d.]+) mm", run_python(LEARN))]
+    assert left[0] == pytest.approx(float(re.findall(r"left ([\d.]+)", of_page)[0]), rel=0.01)
+    assert max(left[2:]) < left[0] / 500  # of the page: 0.004 of 7.45 mm
+    printed = " ".join(follow("learn-0")[0].split())
+    answer = said.partition(" and ")[0]  # of which the frequency has all
+    assert printed.startswith(answer)

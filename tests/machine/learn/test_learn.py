@@ -1,0 +1,310 @@
+"""Learning from executed moves: made-up ring-downs, and a machine with another frequency."""
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.signal import cont2discrete, lfilter
+
+import quietarm as qa
+from quietarm.machine.learn.arrival_map import map_of
+from quietarm.machine.learn.find_start import find_start
+from quietarm.machine.learn.read_swing import read_swing
+from quietarm.machine.learn.tip_modes import TipModes
+from quietarm.models import LinearAxis
+
+AXIS = LinearAxis(omega1=2 * np.pi * 5, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
+TASK = qa.PointToPoint(AXIS, target=0.5, duration=0.7)
+RATE = 500
+AFTER = 1.5
+ARRIVAL = 1.3
+
+
+@cache
+def a_plan(factor=1.0):
+    """A plan of four terms, whose model's frequency is so many times 5 Hz."""
+    plant = replace(AXIS, omega1=factor * AXIS.omega1)
+    return qa.plan_move(replace(TASK, plant=plant), qa.CycloidPolynomial(4), starts=1)
+
+
+def executed(plan, *, seed=0, before=0.1, noise=1e-5, frequency=5.0, lag=0.0, offset=0.0):
+    """Signals of a machine whose tip moves 1.2 times as much as the model says.
+
+    An oscillator of its own frequency answers the set points' acceleration, which a servo delays,
+    by scipy's discrete transfer function. `offset` is what each move leaves besides [m].
+    """
+    time = np.arange(round((before + plan.task.duration + AFTER) * RATE)) / RATE
+    since = np.clip(time - before - lag, 0.0, plan.task.duration)
+    inner = np.unique(np.append(since, [0.0, plan.task.duration]))
+    joint = plan.sampled(inner).joint
+    place, speed, acceleration = (np.interp(since, inner, column) for column in joint.T)
+    moves = (since > 0) & (since < plan.task.duration)
+    acceleration = acceleration * moves
+    omega, zeta = 2 * np.pi * frequency, 0.01
+    tops, bottom, _ = cont2discrete(([-1.0], [1.0, 2 * zeta * omega, omega**2]), 1 / RATE, "foh")
+    swing = lfilter(tops[0], bottom, acceleration)
+    tops, bottom, _ = cont2discrete(
+        ([-1.0, 0, 0], [1.0, 2 * zeta * omega, omega**2]), 1 / RATE, "foh"
+    )
+    reaction = lfilter(tops[0], bottom, acceleration)
+    after = np.maximum(time - before - plan.task.duration, 0.0)
+    rings = offset * np.exp(-zeta * omega * after) * np.sin(omega * after)
+    random = np.random.default_rng(seed)
+    force = 60 * acceleration + 12 * reaction + 40 * speed + 20 * np.sign(speed)
+    return {
+        "time": time,
+        "tip": place + 1.2 * swing + rings + random.normal(0, noise, len(time)),
+        "angle": np.round(place / 1e-6) * 1e-6,
+        "torque": force + random.normal(0, 1.0, len(time)),
+    }
+
+
+def recording(plan, *kinds, name="run", **machine):
+    """A recording of some signals of an executed plan."""
+    signals = executed(plan, **machine)
+    return qa.Recording(signals["time"], **{kind: signals[kind] for kind in kinds}, name=name)
+
+
+def left_by(plan, **machine):
+    """Amplitude of the swing after a move, without noise [m]."""
+    signals = executed(plan, noise=0.0, **machine)
+    late = signals["tip"][signals["time"] > 0.1 + plan.task.duration + 0.1]
+    return float(np.ptp(late)) / 2
+
+
+# What was left
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("phase", [0.0, 1.0, -2.5])
+def test_a_made_up_ring_down_has_its_amplitude_and_phase_at_arrival(phase):
+    time = np.arange(0, 4, 1 / RATE)
+    since = time - ARRIVAL
+    omega, zeta = 2 * np.pi * 5.3, 0.02
+    turns = omega * np.sqrt(1 - zeta**2) * since
+    swing = 2e-3 * np.exp(-zeta * omega * since) * np.cos(turns + phase)
+    noise = np.random.default_rng(0).normal(0, 2e-5, len(time))
+    tip = np.where(since > 0, swing, 0.0) + 0.3 + noise
+
+    read = read_swing(qa.Recording(time, tip=tip), ARRIVAL, AXIS, 0.5).measured
+
+    (found,) = read.swings
+    assert found.amplitude == pytest.approx(2e-3, rel=0.01)
+    assert (found.phase - phase + np.pi) % (2 * np.pi) - np.pi == pytest.approx(0.0, abs=0.01)
+    assert read.values["omega1"] == pytest.approx(omega, rel=1e-3)
+    assert read.values["zeta1"] == pytest.approx(zeta, rel=0.05)
+    error = abs(found.complex_amplitude - 2e-3 * np.exp(1j * phase))
+    assert error < 5 * found.deviation  # five standard deviations
+
+
+@pytest.mark.slow
+def test_an_accelerometer_tells_the_same_displacement():
+    time = np.arange(0, 4, 1 / RATE)
+    since = time - ARRIVAL
+    eigenvalue = -0.01 * 31 + 31j
+    swing = 2e-3 * np.exp(eigenvalue * since + 0.7j)
+    acceleration = (eigenvalue**2 * swing).real  # differentiated twice
+    recorded = qa.Recording(time, acceleration=np.where(since > 0, acceleration, 0.0))
+
+    (found,) = read_swing(recorded, ARRIVAL, AXIS, 0.5).measured.swings
+
+    assert found.amplitude == pytest.approx(2e-3, rel=1e-3)
+    assert found.phase == pytest.approx(0.7, abs=2e-3)
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("seed", range(5))
+def test_noise_alone_tells_no_frequency(seed):
+    time = np.arange(0, 4, 1 / RATE)
+    noise = np.random.default_rng(seed).normal(0, 1e-5, len(time))
+    read = read_swing(qa.Recording(time, tip=noise), ARRIVAL, AXIS, 0.5)
+    assert read.part is None
+    assert read.measured.values == {}
+    assert read.measured.swings[0].amplitude < 5e-6  # half of the noise
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("kinds", [("angle", "tip"), ("tip",), ("torque", "angle")])
+def test_the_start_is_found(kinds):
+    plan = a_plan()
+    start = find_start(plan, recording(plan, *kinds, before=0.264))
+    assert start.time == pytest.approx(0.264, abs=2e-3)  # a row
+    assert start.signal == ("angle" if "angle" in kinds else "tip")
+
+
+def test_modes_and_states_are_the_same_thing():
+    modes = TipModes(replace(AXIS, mode_count=2, share1=0.6, share2=0.4), 0.5)
+    state = modes.state(np.array([1e-3 + 2e-3j, -3e-4j]))
+    assert modes.amplitudes([*state.W, *state.dW]) == pytest.approx([1e-3 + 2e-3j, -3e-4j])
+    assert sum(state.W) == pytest.approx(1e-3)  # the tip is where their real parts say
+
+
+def test_the_map_of_a_linear_machine_is_found_from_two_moves():
+    told = np.array([0.0, 3e-3 - 1e-3j])
+    left = (1.2 - 0.1j) * told + (2e-4 + 1e-4j)
+    found = map_of(told, left, np.full(2, 1e-7), size=0.02)
+    assert found.share == pytest.approx(1.2 - 0.1j, abs=0.02)
+    assert found.deviation == pytest.approx(2e-4 + 1e-4j, abs=1e-5)
+    assert found.swing(found.told_for(0.0)) == pytest.approx(0.0, abs=1e-12)
+
+
+# The next plan
+
+
+@pytest.mark.slow
+def test_three_moves_leave_less_than_a_fiftieth_with_another_frequency():
+    machine = {"frequency": 5.4, "lag": 0.004, "offset": 3e-4}
+    plan = a_plan()
+    sizes = [left_by(plan, **machine)]
+    for number in range(3):
+        learned = qa.learn(plan, [recording(plan, "tip", "angle", seed=number, **machine)])
+        plan = learned.plan
+        sizes.append(left_by(plan, **machine))
+    assert sizes[0] > 2e-3
+    assert sizes[-1] < sizes[0] / 50
+    assert all(after < 1.2 * before for before, after in pairwise(sizes))
+    assert plan.task.plant.omega1 == pytest.approx(2 * np.pi * 5.4, rel=5e-3)
+    assert len(plan.learned.moves) == 3
+    assert plan.learned.model["omega1"] == AXIS.omega1
+
+
+def test_the_first_answer_says_what_the_frequency_does():
+    plan = a_plan()
+    learned = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.4)])
+    assert learned.left == pytest.approx(left_by(plan, frequency=5.4), rel=0.1)
+    assert learned.by_frequency > 0.9 * learned.left
+    assert learned.repeatable < 0.2 * learned.left
+    model, new = learned.changed["omega1"]
+    assert (model, new) == (AXIS.omega1, pytest.approx(2 * np.pi * 5.4, rel=5e-3))
+    assert left_by(learned.plan, frequency=5.4) < learned.next_at_most
+
+
+@pytest.mark.slow
+def test_the_joint_and_its_torque_alone_tell_the_frequency():
+    plan = a_plan()
+    machine = {"frequency": 5.4}
+    learned = qa.learn(plan, [recording(plan, "angle", "torque", **machine)])
+    assert learned.by_joint
+    _, new = learned.changed["omega1"]
+    assert new == pytest.approx(2 * np.pi * 5.4, rel=5e-3)  # 0.1 to 0.4 % on machines
+    assert left_by(learned.plan, **machine) < left_by(plan, **machine) / 10
+
+
+@pytest.mark.slow
+def test_a_right_model_keeps_its_frequency_and_corrects_the_arrival():
+    plan = a_plan()
+    learned = qa.learn(plan, [recording(plan, "tip", "angle", offset=5e-4)])
+    assert learned.changed == {}
+    assert learned.plan.task.plant == plan.task.plant
+    assert learned.plan.task.final is not None
+    assert left_by(learned.plan, offset=5e-4) < 1e-4
+    assert learned.plan.energy < 1.02 * plan.energy
+
+
+@pytest.mark.slow
+def test_there_is_nothing_more_to_learn_from_noise():
+    plan = a_plan()
+    learned = qa.learn(plan, [recording(plan, "tip", "angle")])
+    assert learned.is_done
+    assert learned.plan.coefficients == plan.coefficients
+    assert learned.left <= learned.floor
+    again = qa.learn(learned.plan, [recording(plan, "tip", "angle", seed=1)])
+    assert len(again.plan.learned.moves) == 1  # it is the same motion
+    assert len(again.plan.learned.moves[0].measured) == 2
+
+
+@pytest.mark.slow
+def test_moves_that_differ_are_averaged_and_said_not_to_repeat():
+    plan = a_plan()
+    runs = [
+        recording(plan, "tip", "angle", name=f"run{k}", seed=k, offset=size)
+        for k, size in enumerate([8e-4, -8e-4, 2e-4])
+    ]
+    learned = qa.learn(plan, runs)
+    assert learned.scatter > 4e-4
+    assert learned.step < 0.7
+    assert any("do not repeat" in note for note in learned.notes)
+
+
+@pytest.mark.slow
+def test_a_plan_with_a_history_loads_to_an_equal_value(tmp_path):
+    plan = a_plan()
+    learned = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.2)])
+    learned.plan.save(tmp_path / "next.json")
+    loaded = qa.Plan.load(tmp_path / "next.json")
+    assert loaded == learned.plan
+    assert loaded.learned == learned.plan.learned
+    plan.save(tmp_path / "plain.json")
+    assert "learned" not in (tmp_path / "plain.json").read_text()
+
+
+@pytest.mark.slow
+def test_what_was_learned_is_a_machine():
+    plan = a_plan()
+    machine = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.4)]).machine
+    assert machine.plant.omega1 == pytest.approx(2 * np.pi * 5.4, rel=1e-3)
+    assert machine.plant.mass == AXIS.mass
+    assert [one.parameter for one in machine.estimates] == ["omega1", "zeta1"]
+
+
+# What is refused
+
+
+def cut(recorded, end):
+    """A recording until a time [s]."""
+    return recorded.part(recorded.rows(0.0, end))
+
+
+def stretched(recorded, factor):
+    """The same by a clock that runs so much slower."""
+    return replace(recorded, time=factor * recorded.time)
+
+
+def clipped(recorded, most):
+    """The same by a sensor that sees so far from the target alone [m]."""
+    return replace(recorded, tip=np.clip(recorded.tip, 0.5 - most, 0.5 + most))
+
+
+@pytest.mark.slow_after(4)
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda run: cut(run, 0.95), r"it is too short: it ends 0\.7\d periods after arrival"),
+        (lambda run: cut(run, 0.5), r"it lasts 0\.5 s, and the move of the plan 0\.7 s"),
+        (lambda run: stretched(run, 1.05), r"its clock is off: the move takes 0\.735 s there"),
+        (lambda run: stretched(run, 2.0), r"its clock is off: the move takes 1\.\d+ s there"),
+        (lambda run: run.part(slice(None, None, 40)), "samples a second of a swing of 5 Hz"),
+        (lambda run: replace(run, angle=0.5 * run.angle), "its joint goes 250 mm, and that of"),
+        (lambda run: replace(run, angle=-run.angle), "it is of another move"),
+        (lambda run: clipped(run, 5e-4), "of its samples after arrival are at the sensor's limit"),
+    ],
+)
+def test_a_recording_that_tells_nothing_is_refused_in_a_line(change, words):
+    plan = a_plan()
+    run = change(recording(plan, "tip", "angle", frequency=5.4))
+    with pytest.raises(ValueError, match=words) as refused:
+        qa.learn(plan, [run])
+    assert str(refused.value).startswith("run: ")
+    assert "; " in str(refused.value)  # a remedy
+
+
+def test_a_torque_alone_is_refused():
+    with pytest.raises(ValueError, match="a torque alone does not tell how the tip swings"):
+        qa.learn(a_plan(), [recording(a_plan(), "torque")])
+
+
+@pytest.mark.slow
+def test_a_recording_of_an_earlier_plan_is_refused():
+    plan = a_plan()
+    first = recording(plan, "tip", "angle", frequency=5.4)
+    learned = qa.learn(plan, [first])
+    with pytest.raises(ValueError, match="it is of move 1, which an earlier plan made"):
+        qa.learn(learned.plan, [first])
+
+
+def test_a_plan_of_one_motion_is_refused():
+    plan = qa.evaluate_coefficients(TASK, [], profile=qa.shaped_cycloid(TASK, "zv"))
+    with pytest.raises(ValueError, match="has one motion alone, and nothing to change"):
+        qa.learn(plan, [recording(a_plan(), "tip")])
