@@ -101,7 +101,7 @@ class FullRobot:
         along = shapes.T @ masses
         angles, rates = np.split(state, 2)
         moving = np.column_stack([angles - sag, rates])
-        return np.linalg.solve(along @ shapes, along @ moving).T.ravel()
+        return np.asarray(np.linalg.solve(along @ shapes, along @ moving).T, float).ravel()
 
     def _torques(
         self, path: JointMotion, angles: ca.SX, rates: ca.SX, accelerations: ca.SX
