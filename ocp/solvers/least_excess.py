@@ -8,7 +8,7 @@ linear program gives the answer; elsewhere a few do, each linearised about the l
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import daqp
 import numpy as np
@@ -183,11 +183,13 @@ def _solve_linear(costs: Array, table: Array, upper: Array, lower: Array) -> Arr
     """
     from scipy.optimize import Bounds, LinearConstraint, milp  # not at the top: takes long to load
 
-    size = len(costs)
+    # scipy's types say nothing of arrays
+    low: list[Any] = np.split(lower, [len(costs)])
+    high: list[Any] = np.split(upper, [len(costs)])
     result = milp(
         costs,
-        bounds=Bounds(lower[:size], upper[:size]),
-        constraints=LinearConstraint(table, lower[size:], upper[size:]),
+        bounds=Bounds(low[0], high[0]),
+        constraints=LinearConstraint(table, low[1], high[1]),
     )
     return result.x
 

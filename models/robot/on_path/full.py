@@ -144,7 +144,7 @@ class FullRobot(SprungRobot):
         along = shapes.T @ masses
         angles, rates = np.split(state, 2)
         moving = np.column_stack([angles - sag, rates])
-        return np.linalg.solve(along @ shapes, along @ moving).T.ravel()
+        return np.asarray(np.linalg.solve(along @ shapes, along @ moving).T, float).ravel()
 
     def _as_bent(self, planned: MovingRobot) -> Array:
         """Angles of this robot's springs by those of the one that is planned with.
