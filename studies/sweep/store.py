@@ -107,7 +107,8 @@ class Store:
     @property
     def figures(self) -> list[Figure]:
         """Figures of a user's own, and peaks that are shown, of which the dataset has values."""
-        return [figure for figure in further_figures(SWEEP, self.definition.grid.task) if figure.name in self._names]
+        known = further_figures(SWEEP, self.definition.grid.task)
+        return [figure for figure in known if figure.name in self._names]
 
     def _check_layout(self) -> None:
         """Hold axes and variables against what was asked; ValueError where they are others."""

@@ -197,7 +197,7 @@ class RobotInTime(SprungRobot):
         dynamics = self._dynamics
         sag = self.at_rest(place)
         frequencies, shapes = modes_at(dynamics, place, sag)
-        masses = dynamics.masses(np.concatenate([place, sag])).full()
+        masses = dynamics.masses(np.concatenate([place, sag]))
         along = shapes.T @ masses[dynamics.driven :, dynamics.driven :]
         angles, rates = np.split(state, 2)
         amplitudes = np.hypot(along @ (angles - sag), along @ rates / frequencies)
