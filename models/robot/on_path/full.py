@@ -157,7 +157,7 @@ class FullRobot(SprungRobot):
         of_beam = self._robot.mechanism.springs_of_beam
         of_planned = planned.mechanism.springs_of_beam
         angles = np.zeros((len(of_beam), len(of_planned)))
-        angles[np.ix_(~of_beam, ~of_planned)] = np.eye(np.count_nonzero(~of_beam))
+        angles[np.ix_(~of_beam, ~of_planned)] = np.eye(int(np.count_nonzero(~of_beam)))
         # about x and about y in turn
         angles[np.ix_(of_beam, of_planned)] = np.kron(there.angles_of(here), np.eye(2))
         return angles

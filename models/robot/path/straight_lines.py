@@ -95,7 +95,7 @@ _SHORT = 0.05
 
 def fewest_within(
     points: Array, tolerance: float, spline: Callable[[Array, Array], Spline], most: int
-) -> tuple[Array, Array]:
+) -> tuple[list[int], Array]:
     """Numbers of some of the points whose spline is within a tolerance of the lines between all.
 
     Points are added where it is farthest, one between two others at a time.
@@ -113,7 +113,7 @@ def fewest_within(
 
     Returns
     -------
-    numbers, places : ndarray
+    numbers, places : list of int, ndarray
         Where these are, by the way along the lines from 0 to 1. None where it takes more.
     """
     ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -128,7 +128,7 @@ def fewest_within(
     while len(kept) <= most:
         off = np.abs(spline(places[kept], points[kept])(checked) - along).max(axis=1)
         if off.max() <= tolerance:
-            return kept, places[kept]
+            return kept.tolist(), places[kept]
         parts = np.searchsorted(places[kept], checked, side="right").clip(1, len(kept) - 1)
         added = list[int]()
         for part in range(1, len(kept)):
@@ -141,7 +141,7 @@ def fewest_within(
         if not added:
             break
         kept = np.sort(np.append(kept, added))
-    return np.array([], int), np.array([])
+    return [], np.array([])
 
 
 _FIRST = 3
