@@ -98,7 +98,7 @@ def test_a_front_of_time_and_energy_says_what_a_millisecond_takes(done):
     line = "front single-link --target 30deg --band 5mm --error frequency=2% --jerk-limit 300"
     out = done(
         f"{line} --torque-limit 0.2 --objectives time,energy --points 3 --output t.json -o t.csv "
-        "-o t.png"
+        "-o t.png --quiet"
     )
     front = TimeFront.load("t.json")
     assert len(front.points) == 3
