@@ -3,11 +3,13 @@
 import math
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
+from robots import straight, ur5_with_bar
 
 import quietarm as qa
-from quietarm.models import DualLinkManipulator, SingleLinkManipulator
+from quietarm.models import DualLinkManipulator, JointMotion, SingleLinkManipulator
 from quietarm.ocp.acting import (
     act_after_arrival,
     time_to_act,
@@ -138,3 +140,25 @@ def test_samples_say_when_the_last_one_beyond_the_band_was():
 def test_samples_that_fit_no_time_are_refused(times, deviations, words):
     with pytest.raises(ValueError, match=words):
         time_to_act_by_samples(times, deviations, 1e-4)
+
+
+@pytest.mark.slow
+def test_the_tip_of_a_robot_is_followed_in_space_with_its_sag():
+    """By the whole robot's own kinematics at rest, at places of its path and a little beyond."""
+    plant = ur5_with_bar().along(straight())
+    full = plant.in_full
+    place, angles = ca.SX.sym("place"), ca.SX.sym("angles", full.springs)
+    still = JointMotion(place, ca.SX(0), ca.SX(0))
+    tip = ca.Function("tip", [place, angles], [full.tip(still, angles)])
+    places = np.array([0.0, 0.31, 0.9, 0.999, 1.0, 1.01])
+    rests = np.hstack([tip(at, full.at_rest(at)).full() for at in places.tolist()])
+    deviations = plant.tip_deviations(places, np.zeros((plant.tips, 6)), 1.0)
+    assert np.abs(deviations - (rests - rests[:, 4:5])).max() < 1e-8
+    task = plant.task(1.0, 1.0, band=1e-3, uncertainty=None)
+    motion = qa.evaluate_coefficients(task, []).candidate
+    assert motion.residual > 1e-3
+    times = np.linspace(0.0, 30.0, 300_001)
+    vibration = motion.vibration
+    swings = vibration.displacements @ vibration.states(motion.arrival[0], times).T
+    expected = 1.0 + last_beyond(times, np.linalg.norm(swings, axis=0), 1e-3)
+    assert motion.acts_after == pytest.approx(expected, abs=2e-4)

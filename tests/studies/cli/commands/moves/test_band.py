@@ -33,12 +33,14 @@ def test_without_an_error_the_range_is_five_percent_and_is_said(done):
     assert qa.Plan.load("plan.json").task.ranges == {"frequency": 0.05}
 
 
+@pytest.mark.slow
 def test_a_tip_that_nothing_damps_may_never_act(done):
     out = done(f"evaluate {PAPER} --set zeta=0 --band 0.1mm --output plan.json")
     assert out.startswith("may never act: the tip does not stay within 0.1 mm for frequency")
     assert "acts_after" not in qa.Plan.load("plan.json").figures
 
 
+@pytest.mark.slow
 def test_a_plant_without_a_place_of_its_tip_says_what_is_taken(done):
     line = "evaluate dual-link --target 30deg --duration 1.6 --coefficients=0,0 --band 50mm"
     first, *_ = done(line).splitlines()
@@ -98,7 +100,7 @@ def test_a_front_of_time_and_energy_says_what_a_millisecond_takes(done):
     line = "front single-link --target 30deg --band 5mm --error frequency=2% --jerk-limit 300"
     out = done(
         f"{line} --torque-limit 0.2 --objectives time,energy --points 3 --output t.json -o t.csv "
-        "-o t.png"
+        "-o t.png --quiet"
     )
     front = TimeFront.load("t.json")
     assert len(front.points) == 3

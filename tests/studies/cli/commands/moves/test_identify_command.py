@@ -41,9 +41,11 @@ def test_pushes_make_a_machine_that_is_planned_for(push, done, refused):
     assert (push / "fit.png").read_bytes().startswith(b"\x89PNG")
     found = Identified.load(push / "arm.json")
     assert found.plant.length == 0.6
-    done(f"plan arm.json {plan} --output plan.json")
+    out = done(f"plan arm.json {plan} --output plan.json")
     task = Plan.load(push / "plan.json").task
-    assert task.ranges == found.errors
+    # of a frequency 2 % at least, whatever the recordings of one hour show
+    assert task.ranges == {**found.errors, "omega": 0.02} == found.ranges
+    assert "% uncertain by the recordings, and 2 % here" in out
     assert (task.plant.friction, task.plant.omega) == (0.02, found.plant.omega)
     out = done("identify --check arm.json again1.csv --tip tip_mm --quiet")
     assert "of the swing predicted over five periods, at least" in out
