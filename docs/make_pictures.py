@@ -11,6 +11,7 @@ values. A test makes them again without writing, and names those that are older 
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import io
 import json
@@ -39,7 +40,15 @@ from PIL import Image
 
 import quietarm as qa
 from quietarm.studies.cli import main
-from quietarm.views.pictures.axes import NARROW, TITLE, head, legend_below, new_figure
+from quietarm.views.pictures.axes import (
+    NARROW,
+    TITLE,
+    head,
+    legend_below,
+    logarithmic,
+    new_figure,
+    side_by_side,
+)
 
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
@@ -344,10 +353,49 @@ def _with_dots(picture: bytes, an_inch: int) -> bytes:
     return content.getvalue()
 
 
+def residual_over_moves(quick: bool) -> Picture:
+    """What two machines leave by move, while plans are learned: of benchmarks/learning.py."""
+    with (DOCS.parent / "benchmarks" / "results" / "learning.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    machines = list(dict.fromkeys(row["machine"] for row in rows))
+    figure, axes = side_by_side(
+        len(machines),
+        "Three moves take away what model and drive leave",
+        "median of the seeds; by a tip sensor, and by the joint and its force alone",
+    )
+    cases = {
+        ("right model", "tip+angle"): "right model",
+        ("model 8 % too slow", "tip+angle"): "8 % too slow",
+        ("model 8 % too fast", "tip+angle"): "8 % too fast",
+        ("model 8 % too slow", "angle+torque"): "8 % too slow, by the force",
+    }
+    for name, ax in zip(machines, axes):
+        largest = list[float]()
+        for number, ((case, signals), label) in enumerate(cases.items()):
+            own = [
+                row
+                for row in rows
+                if (row["machine"], row["case"], row["signals"]) == (name, case, signals)
+            ]
+            moves = [int(row["move"]) for row in own]
+            left = [float(row["median_mm"]) for row in own]
+            largest += left
+            how = qa.pictures.COLOURS[number]
+            ax.plot(moves, left, "o-", color=how, label=label, markersize=4)
+        ax.set_title(name, **TITLE)
+        ax.set(xlabel="moves learned from", ylabel="residual [mm]", xticks=range(5))
+        ax.grid(alpha=0.25)
+        logarithmic(ax, largest, "y")
+    legend_below(figure, axes, 2, 9)
+    figure.savefig("learned.png", dpi=150)
+    return _picture_of(figure, "learned.png", Path("learned.png"), quick)
+
+
 MAKERS: Mapping[str, Callable[[bool], Picture]] = {
     "front.png": fronts_compared,
     "drag.png": page_to_drag,
     "explore.png": page_of_sliders,
+    "learned.png": residual_over_moves,
 }
 """Makers of pictures that no command writes; told whether less will do."""
 

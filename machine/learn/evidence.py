@@ -189,7 +189,24 @@ class Evidence:
                 changed[name] = (model, estimate.value)
         if not any(is_frequency(plant, name) for name in changed):
             return {}  # a damping alone is left to the arrival state
-        return changed
+        return changed if self._explains(changed) else {}
+
+    def _explains(self, changed: dict[str, tuple[float, float]]) -> bool:
+        """Whether less of the last move is left to explain with what is changed than without.
+
+        A small swing may show another frequency that the move does not have.
+        """
+        if self.by_joint:
+            return True  # the swing is computed by it
+        plant = self._plan.task.plant
+        rest = list[float]()
+        known = {name: getattr(plant, name) for name in changed}
+        first = {name: self.history.model.get(name, value) for name, value in known.items()}
+        for values in (first, {name: new for name, (_, new) in changed.items()}):
+            other = replace(plant, **values)
+            share = self.seen_share(other) or 1.0
+            rest.append(float(np.abs(self._left[-1] - share * self._told_by(other)[-1]).sum()))
+        return rest[1] < rest[0]
 
     @cached_property
     def plant(self) -> Plant:

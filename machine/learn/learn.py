@@ -79,7 +79,15 @@ def learn(
     again = plan.with_entries(learned=history)
     if step:
         task = replace(plan.task, plant=evidence.plant, final=evidence.modes.state(told))
-        again = plan_again(plan, task, dearer, solver).with_entries(learned=history)
+        again, share = plan_again(plan, task, dearer, solver)
+        again = again.with_entries(learned=history)
+        told = evidence.modes.amplitudes(again.task.final_state)
+        if share < 1:
+            step *= share
+            notes.append(
+                f"only {share:.0%} of the correction is made, as all of it takes more energy than "
+                f"{100 * dearer:g} %; allow more by --dearer"
+            )
     notes += [note for one in read for note in (one.doubt, *one.after.notes) if note]
     return Learning(
         plan=again,

@@ -10,33 +10,53 @@ from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.solvers.solver import Solver
-from quietarm.ocp.task import PointToPoint
+from quietarm.ocp.task import ModalState, PointToPoint
 
 
-def plan_again(plan: Plan, task: PointToPoint, dearer: float, solver: Solver) -> Plan:
+def plan_again(plan: Plan, task: PointToPoint, dearer: float, solver: Solver) -> tuple[Plan, float]:
     """The plan of a task that is a little other than that of a plan, from its coefficients.
+
+    And the share of the way to its arrival state that it makes: less than 1 where all of it would
+    take more energy by more than a share, than the plan, or where the plant is another than the
+    same move to the plan's arrival.
 
     Raises
     ------
     SolverFailedError
         When no motion within the limits is found.
     ValueError
-        When it would take more energy by more than a share: than the plan, or where the plant is
-        another than the same move from rest to rest.
+        When a part of the way takes too much energy, too.
     """
     began = time.perf_counter()
-    again = _from(plan, task, solver)
-    more = again.energy / plan.energy - 1
-    if more > dearer and task.plant != plan.task.plant:
+    again, share = _from(plan, task, solver), 1.0
+    before = plan
+    if again.energy > (1 + dearer) * plan.energy and task.plant != plan.task.plant:
         # the plan's own energy is that of a model which is wrong
-        at_rest = _from(plan, replace(task, final=plan.task.final), solver)
-        more = again.energy / at_rest.energy - 1
+        before = _from(plan, replace(task, final=plan.task.final), solver)
+    more = again.energy / before.energy - 1
     if more > dearer:
+        share = 0.9 * dearer / more
+        softer = replace(task, final=_between(plan.task.final, task.final, share))
+        again = _from(plan, softer, solver)
+    if again.energy > (1 + dearer) * before.energy:
         raise ValueError(
-            f"the next plan takes {100 * more:.2g} % more energy, {again.energy:.4g} J, for what "
-            f"was left; allow that by --dearer {100 * more + 0.1:.2g}%"
+            f"the next plan takes {100 * more:.2g} % more energy for what was left; allow that by "
+            f"--dearer {100 * more + 0.1:.2g}%"
         )
-    return again.restated(settings=plan.record.settings, seconds=time.perf_counter() - began)
+    restated = again.restated(settings=plan.record.settings, seconds=time.perf_counter() - began)
+    return restated, share
+
+
+def _between(first: ModalState | None, last: ModalState | None, share: float) -> ModalState | None:
+    """A state between two."""
+    if last is None:
+        return None
+    before = first or ModalState((0.0,) * len(last.W), (0.0,) * len(last.W))
+    mixed = [
+        tuple((1 - share) * a + share * b for a, b in zip(*both))
+        for both in ((before.W, last.W), (before.dW, last.dW))
+    ]
+    return ModalState(*mixed)
 
 
 def _from(plan: Plan, task: PointToPoint, solver: Solver) -> Plan:
