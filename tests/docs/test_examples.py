@@ -251,7 +251,7 @@ def follow(tmp_path, capfd, monkeypatch, quick_pictures):
                 main(shortened(words))
             out, err = capfd.readouterr()
             assert (ended.value.code, out != "", err) == (0, True, "")
-            options = ("--output", "--csv", "--figure")
+            options = ("--output", "--csv", "--figure", "--machine")
             asked.update(words[i + 1] for i, word in enumerate(words) if word in options)
             asked.update(name.replace(".c", ".h") for name in [*asked] if name.endswith(".c"))
             assert {path.name for path in tmp_path.iterdir()} == asked
