@@ -101,7 +101,7 @@ class Drive:
 
     @property
     def has_loops(self) -> bool:
-        """Whether both loops are known, so that the servo can be simulated."""
+        """True if both loops are known, so that the servo can be simulated."""
         return self.position_loop is not None and self.speed_loop is not None
 
     @property

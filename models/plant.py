@@ -124,7 +124,7 @@ if TYPE_CHECKING:
 
     @dataclass(frozen=True)
     class _Driven:
-        """What editors know of every plant's keyword `drive`."""
+        """Declaration of the keyword `drive` of every plant, for editors."""
 
         drive: Drive | None = field(default=None, kw_only=True)
 
@@ -276,7 +276,7 @@ class Plant(_Driven, ABC):
 
     @property
     def tip_reach(self) -> float | None:
-        """How far its tips go with the joint [m/rad, or 1 where it slides]; None where not known.
+        """Distance of the tips by the joint's way [m/rad, or 1 of a sliding one]; None if not known.
 
         In the direction of their displacements; by default it is not known.
         """

@@ -363,7 +363,7 @@ def _rates_of_joints(plant: Plant, path: JointMotion) -> Iterator[Rate]:
 def _rates_of_tips(
     plant: Plant, path: JointMotion, modes: list[list[Expression]]
 ) -> Iterator[Rate]:
-    """The same of the tips, of what is not CasADi's; modes are W, W' and W''."""
+    """Check rates of the tips that are not CasADi's; modes are W, W' and W''."""
     tips = _tips(plant, path, modes[0])
     for order, method in enumerate(("tip_speeds", "tip_accelerations"), start=1):
         if not _gives(plant, method):

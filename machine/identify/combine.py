@@ -20,7 +20,7 @@ from quietarm.machine.identify.identified import Estimate, Part
 from quietarm.machine.identify.trends import Trend, trend_of
 
 Array = NDArray[np.float64]
-Interval = tuple[float, float]
+Span = tuple[float, float]
 
 
 class Group(NamedTuple):
@@ -117,7 +117,7 @@ def estimate(name: str, groups: Sequence[Group]) -> Estimate:
     of_parts[2] = max(of_mean - of_parts.sum(), of_mean / 1e6)  # that of the fits
     freedom = np.array([max(files - 1, 1), max(count - files, 1), freedom_of_fit * count])
 
-    def ends(variances: Array) -> Interval:
+    def ends(variances: Array) -> Span:
         total = variances.sum()
         freedom_of_total = total**2 / (variances**2 / freedom).sum()
         half = float(stdtrit(freedom_of_total, (1 + level) / 2) * total**0.5)
@@ -127,9 +127,7 @@ def estimate(name: str, groups: Sequence[Group]) -> Estimate:
     return Estimate(name, mean, *ends(of_parts), *next_swing)
 
 
-def _covering(
-    estimated: Estimate, of_mean: Sequence[Interval], of_next: Sequence[Interval]
-) -> Estimate:
+def _covering(estimated: Estimate, of_mean: Sequence[Span], of_next: Sequence[Span]) -> Estimate:
     """An estimate whose intervals, of the mean and of the next swing, hold these as well."""
     ends = (estimated.low, estimated.high)
     low, high = _hull([ends, *of_mean])
@@ -140,7 +138,7 @@ def _covering(
     return replace(estimated, low=low, high=high, next_low=next_low, next_high=next_high)
 
 
-def _hull(ranges: Sequence[Interval]) -> Interval:
+def _hull(ranges: Sequence[Span]) -> Span:
     """The least range that holds all."""
     return min(low for low, _ in ranges), max(high for _, high in ranges)
 

@@ -1,4 +1,4 @@
-"""What a robot's parts have to be, and what is made of them where they are not given."""
+"""Checks of a robot's parts, and their defaults."""
 
 from __future__ import annotations
 

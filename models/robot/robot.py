@@ -174,7 +174,7 @@ class Robot(CheckedRobot):
 
     @cached_property
     def finer(self) -> Robot:
-        """The same robot with its beam on other hinges, by which what is planned is judged."""
+        """Robot with its beam on other hinges, by which a plan is judged."""
         if self.beam is None:
             return self
         finer = copy.copy(self)
@@ -241,7 +241,7 @@ class Robot(CheckedRobot):
 
     @interruptible
     def off_straight(self, path: GeometricPath) -> float:
-        """How far the tip, if nothing bends, leaves where straight lines of the joints lead it [m].
+        """Return the tip's largest distance from the way by straight lines of the joints [m].
 
         These are the lines between the path's waypoints; 0 of a path without.
         """

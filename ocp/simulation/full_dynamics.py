@@ -27,7 +27,7 @@ from quietarm.ocp.simulation.objective import spent
 Array = NDArray[np.float64]
 
 
-Place = float | Array
+Places = float | Array
 """On a path, or of all joints."""
 
 
@@ -46,7 +46,7 @@ class FullFigures(NamedTuple):
 def follow_in_full(
     equations: SprungEquations,
     motion: PiecewiseMotion,
-    ends: tuple[Place, Place],
+    ends: tuple[Places, Places],
     steps: int,
     window: Array,
     energy: Energy,

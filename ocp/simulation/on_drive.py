@@ -39,7 +39,7 @@ MOST_STEPS = 1_000_000
 
 
 class DriveFigures(NamedTuple):
-    """What a plan comes to on its drive, of the servo, the transmission and dry friction.
+    """Figures of a plan on its drive: servo, transmission and dry friction.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class DriveFigures(NamedTuple):
 
 @dataclass(frozen=True)
 class DriveRun:
-    """What motor, load and tips do on a drive: an entry of each array a step.
+    """Motion of motor, load and tips on a drive: an entry of each array a step.
 
     Attributes
     ----------

@@ -103,7 +103,7 @@ class Servo:
 
     @property
     def is_compliant(self) -> bool:
-        """Whether motor and load move apart; not where belt or rotor are unknown."""
+        """True if motor and load move apart; False if belt or rotor are unknown."""
         drive = self.drive
         if not (drive.compliance and drive.rotor):
             return False
@@ -164,7 +164,7 @@ class Moving(NamedTuple):
 
 
 def state_size(servo: Servo) -> int:
-    """How many numbers the state of motor, load and modes has."""
+    """Number of entries of the state of motor, load and modes."""
     return (4 if servo.is_compliant else 2) + 2 * servo.plant.modes
 
 
@@ -198,7 +198,7 @@ def state_rates(servo: Servo, state: ca.SX, effort: ca.SX, rubbing: ca.SX) -> ca
 
 
 class SetPoint(NamedTuple):
-    """What a servo is asked for at one time: place, speed and acceleration."""
+    """Set point of a servo at one time: place, speed and acceleration."""
 
     place: ca.SX
     speed: ca.SX
@@ -248,7 +248,7 @@ def _modes_on_servo(servo: Servo) -> tuple[complex, ...]:
 
 
 def grows(servo: Servo) -> bool:
-    """Whether structure and servo swing ever more, by their linear equations."""
+    """Return whether structure and servo swing ever more, by their linear equations."""
     values = _modes_on_servo(servo)
     rounding = 1e-9 * max(map(abs, values))
     return max(value.real for value in values) > rounding

@@ -29,7 +29,7 @@ _SETTLED = 2e-6
 
 @dataclass(frozen=True)
 class SetPoints:
-    """What a servo is given: rows of time [s], place [rad], speed and acceleration.
+    """Set points of a servo: rows of time [s], place [rad], speed and acceleration.
 
     After the last row the servo holds its place.
     """

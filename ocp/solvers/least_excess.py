@@ -177,7 +177,7 @@ class _Linearised:
 
 
 def _solve_linear(costs: Array, table: Array, upper: Array, lower: Array) -> Array | None:
-    """Of a linear program the solution by HiGHS, which scales it; None where there is none.
+    """Solve a linear program by HiGHS, which scales it; None if there is no solution.
 
     Bounds are of the unknowns, then of the rows of the table.
     """

@@ -28,8 +28,8 @@ pytestmark = pytest.mark.usefixtures("what_is_made_up_is_forgotten")
 
 MOVE = "single-link --plant-file mine.py --target 30deg --duration 0.8 --quiet"
 BENCH = "bench single-link-30deg-0.8s-2-terms --plant-file mine.py --quiet --runs 2"
-WITHOUT_MOTIONS = {"list", "identify", "reproduce"}
-"""Commands that show no motion of a user's task: names, a recording, the paper's own figures."""
+WITHOUT_MOTIONS = {"list", "identify", "learn", "reproduce"}
+"""Commands that show no motion of a user's task: names, recordings, the paper's own figures."""
 LABEL = "RMS torque"
 FIRST = [
     f"plan {MOVE} --terms 4 --output plan.json --output plan.png --output plan.html",

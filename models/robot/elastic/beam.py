@@ -228,7 +228,7 @@ class Beam:
         return scale * np.array(modes.wave_numbers, dtype=float) ** 2
 
     def for_modes(self, count: int) -> Beam:
-        """The same with as many hinges as so many modes need, if their number was not given."""
+        """Return the beam with as many hinges as its modes need, unless their number was given."""
         needed = max(USUAL_HINGES, math.ceil(count / 2) + _HINGES_BEYOND)
         if self.pieces is not None or needed == USUAL_HINGES:
             return self
@@ -236,7 +236,7 @@ class Beam:
 
     @property
     def finer(self) -> Beam:
-        """The same with another number of hinges, exact ones, by which a plan is judged."""
+        """Beam with another number of exact hinges, by which a plan is judged."""
         count = self.count + 1 if self.count < MOST_PIECES else self.count - 1
         return replace(self, pieces=count, hinges=EXACT)
 

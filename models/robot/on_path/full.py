@@ -70,7 +70,7 @@ class SprungRobot(ABC):
     def _torques(
         self, path: JointMotion, angles: ca.SX, rates: ca.SX, accelerations: ca.SX
     ) -> ca.SX:
-        """Of all joints, by inverse dynamics."""
+        """Return the torques of all joints, by inverse dynamics."""
         joints = self.joints(path)
         return self._dynamics.torques(
             ca.vertcat(*(joint.angle for joint in joints), angles),
@@ -181,7 +181,7 @@ class RobotInTime(SprungRobot):
         return [JointMotion(*(column[joint] for column in columns)) for joint in range(count)]
 
     def frequencies(self, place: Array) -> Array:
-        """Of all modes with the joints at a place [rad/s], rising."""
+        """Return the frequencies of all modes with the joints at a place [rad/s], rising."""
         return modes_at(self._dynamics, place)[0]
 
     def swings(self, place: Array, state: Array) -> list[tuple[float, float]]:

@@ -132,7 +132,7 @@ _BESIDE_POSITIONS = {
 
 
 def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
-    """Whatever has joint_names and points in a message, however deep."""
+    """Find the parts of a message that have joint_names and points, however deep."""
     if isinstance(document, Mapping):
         if "points" in document and "joint_names" in document:
             yield document
@@ -144,7 +144,7 @@ def _trajectories_in(document: object) -> Iterator[Mapping[str, Any]]:
 
 
 def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
-    """Whether it is a MultiDOFJointTrajectory, of whole poses."""
+    """Return whether a trajectory is a MultiDOFJointTrajectory, which holds whole poses."""
     points = trajectory["points"]
     first = points[0] if isinstance(points, list) and points else None
     return isinstance(first, Mapping) and "transforms" in first

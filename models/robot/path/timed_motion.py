@@ -84,12 +84,12 @@ class TimedMotion:
 
     @property
     def duration(self) -> float:
-        """How long it takes [s]."""
+        """Duration of the motion [s]."""
         return float(self.times[-1])
 
     @cached_property
     def lengths(self) -> Array:
-        """Of the pieces [s]."""
+        """Durations of the pieces [s]."""
         return np.diff(self.times)
 
     def of_joints(self, names: tuple[str, ...]) -> TimedMotion:
@@ -127,7 +127,7 @@ class TimedMotion:
 
     @property
     def steps(self) -> Array:
-        """By how much accelerations jump where pieces meet, and from and to rest, by joint."""
+        """Return the jumps of acceleration where pieces meet, and from and to rest, by joint."""
         ends = self.at(np.array([0.0, 1.0]), 2)
         nothing = np.zeros((1, ends.shape[2]))
         return np.concatenate([ends[:, 0], nothing]) - np.concatenate([nothing, ends[:, 1]])

@@ -64,9 +64,9 @@ def test_what_is_not_certified_has_the_place_of_its_minimum(monkeypatch):
     within = qa.weighted_front(task, bound=bound, weights=[(1, 1)], starts=1).points[1]
     certify = tradeoff.certify
 
-    def refuse(problems, solved, solver, tolerances, limits):
-        if tolerances == tradeoff.OF_A_PLAN:  # an end
-            return certify(problems, solved, solver, tolerances, limits)
+    def refuse(problems, solved, solver, limits, **tolerances):
+        if tolerances["agreement"] == tradeoff.OF_A_PLAN:  # an end
+            return certify(problems, solved, solver, limits, **tolerances)
         return ["refused"] * len(solved)
 
     monkeypatch.setattr(tradeoff, "certify", refuse)
