@@ -276,7 +276,7 @@ class Plant(_Driven, ABC):
 
     @property
     def tip_reach(self) -> float | None:
-        """Distance of the tips by the joint's way [m/rad, or 1 of a sliding one]; None if not known.
+        """Distance of the tips by the joint's way [m/rad, or 1 if it slides]; None if not known.
 
         In the direction of their displacements; by default it is not known.
         """
