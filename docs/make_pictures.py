@@ -63,6 +63,8 @@ SAMPLES = 9
 """Of a line, whose values are kept."""
 NEAR = 0.02
 """Share of the range of an axis by which a value may differ on another machine."""
+FRAMES = 16
+"""Of a film of the page to drag, in a second."""
 BY_CHANCE = ("search", "front.png")
 """Their values depend on the last digits of libraries, by way of the random numbers."""
 
@@ -322,27 +324,65 @@ def _first_cards(page: Any) -> bytes:
     return _with_dots(page.screenshot(clip=clip, full_page=True), 192)
 
 
-def page_to_drag(quick: bool) -> Picture:
-    """The front to drag of the site's first page, a fifth of the way, as the cycloid swings."""
+def film_of_the_page(quick: bool) -> Picture:
+    """The page to drag as it moves: the arm at rest, then along the front to where it swings."""
+    _page_of_fronts()
+    played = np.arange(0.0, 2.0, 1.0 if quick else 1 / FRAMES)
+    swinging = 1.0  # the time at which the plain cycloid swings farthest
+    with a_page(700, 700, reduced_motion="reduce") as page:
+        page.goto(Path("front.html").resolve().as_uri())
+        page.locator("header").evaluate("header => header.remove()")
+        page.focus("#handle")
+        page.keyboard.press("Home")
+        frames = [_first_two_cards(page, time) for time in played]
+        for key, presses in (("ArrowRight", 36), ("ArrowLeft", 36)):
+            for press in range(presses):
+                page.keyboard.press(key)
+                if press % 3 == 2 and not quick:
+                    frames.append(_first_two_cards(page, swinging))
+            if key == "ArrowRight":
+                frames += [_first_two_cards(page, time) for time in played]
+        words = page.evaluate("document.body.innerText").splitlines()
+    shown: Shown = {"words": masked(words), "lines": [], "areas": []}
+    return Picture(_film(frames), shown)
+
+
+def _page_of_fronts() -> None:
+    """Write front.html, the page that the site shows first."""
     sys.path.insert(0, str(DOCS / "_extensions"))
     from site_front import page_of_fronts
 
     page_of_fronts().save("front.html")
-    picture, words = _cards_of("front.html", 1200)
-    shown: Shown = {"words": masked(words), "lines": [], "areas": []}
-    return Picture(picture, shown, None if quick else _cards_of("front.html", 378, 2)[0])
 
 
-def _cards_of(file: str, width: int, dots: int = 1) -> tuple[bytes, list[str]]:
-    """The page to drag, and its words; on a phone a pixel of a page has several dots."""
-    with a_page(width, 700, reduced_motion="reduce", device_scale_factor=dots) as page:
-        page.goto(Path(file).resolve().as_uri())
-        page.focus("#handle")
-        for _ in range(11):
-            page.keyboard.press("ArrowRight")
-        page.evaluate("document.activeElement.blur()")
-        words = page.evaluate("document.body.innerText").splitlines()
-        return _with_dots(page.locator(".cards").screenshot(), 96 * dots), words
+def _first_two_cards(page: Any, time: float) -> Image.Image:
+    """The front and the arm at a time of the motion [s], as they are on the screen."""
+    page.evaluate(f"seek({time})")
+    boxes = [page.locator(card).bounding_box() for card in ("#trade-off", "#arm")]
+    right = max(box["x"] + box["width"] for box in boxes)
+    bottom = max(box["y"] + box["height"] for box in boxes)
+    left, top = boxes[0]["x"], boxes[0]["y"]
+    clip = {"x": left, "y": top, "width": right - left, "height": bottom - top}
+    return Image.open(io.BytesIO(page.screenshot(clip=clip, full_page=True)))
+
+
+def _film(frames: list[Image.Image]) -> bytes:
+    """A GIF of frames, all in the colours of the first."""
+    first = frames[0].convert("RGB").quantize(64, dither=Image.Dither.NONE)
+    alike = [
+        frame.convert("RGB").quantize(palette=first, dither=Image.Dither.NONE) for frame in frames
+    ]
+    content = io.BytesIO()
+    alike[0].save(
+        content,
+        format="GIF",
+        save_all=True,
+        append_images=alike[1:],
+        duration=1000 // FRAMES,
+        loop=0,
+        optimize=True,
+    )
+    return content.getvalue()
 
 
 def _with_dots(picture: bytes, an_inch: int) -> bytes:
@@ -393,7 +433,7 @@ def residual_over_moves(quick: bool) -> Picture:
 
 MAKERS: Mapping[str, Callable[[bool], Picture]] = {
     "front.png": fronts_compared,
-    "drag.png": page_to_drag,
+    "dragged.gif": film_of_the_page,
     "explore.png": page_of_sliders,
     "learned.png": residual_over_moves,
 }

@@ -6,6 +6,7 @@ import shlex
 import pytest
 from pages import COMMANDS, PAGES, README, ROOT, TWO_COMMANDS
 
+import quietarm as qa
 from quietarm.ocp import evaluate_coefficients, plan_move
 from quietarm.studies.cli import quietarm
 from quietarm.studies.reproduce.paper import SINGLE_LINK_SIXTH
@@ -44,7 +45,8 @@ def test_the_table_is_that_of_a_reproduction():
         names, _, *rows = _rows(part.splitlines())
         move = part.split("\n", 1)[0].split(", ", 1)[1]
         measured[move] = {row[0]: row[names.index("energy [J]")] for row in rows}
-    (table,) = [block for block in README.split("\n\n") if block.startswith("| energy [J] |")]
+    paper = (ROOT / "docs/paper.md").read_text()
+    (table,) = [block for block in paper.split("\n\n") if block.startswith("| energy [J] |")]
     names, _, *rows = _rows(table.splitlines())
     assert [row[0].split(", ", 1)[1] for row in rows] == list(measured)
     own = ("paper, printed", "its search, here", "gradient, same residual")
@@ -65,10 +67,49 @@ def test_the_table_is_that_of_a_reproduction():
 
 def test_the_picture_says_what_is_computed():
     # The picture's text: the plain cycloid leaves so much, the plan needs such a share.
-    (alt,) = re.findall(r"!\[([^]]*)\]\(docs/images/move\.gif\)", README)
+    (alt,) = re.findall(r"!\[([^]]*)\]\(images/move\.gif\)", PAGES["pictures"])
     task = SINGLE_LINK_SIXTH.task
     cycloid, plan = evaluate_coefficients(task, []), plan_move(task)
     assert re.search(r"ringing by (\d+) mm", alt).group(1) == f"{cycloid.residual * 1e3:.0f}"
     assert "a quarter of the energy" in alt
     assert plan.energy / cycloid.energy == pytest.approx(0.25, abs=0.02)
     assert plan.residual < 1e-8
+
+
+def _readme_table(heading):
+    (table,) = [block for block in README.split("\n\n") if block.startswith(heading)]
+    return _rows(table.splitlines())[2:]
+
+
+def test_when_the_tool_may_act_is_what_the_page_of_the_drive_has():
+    _, gantry, picker, *_ = re.split(r"^(?:Gantry|Picker), [\d.]+ m:$", PAGES["drive"], flags=re.M)
+    motions = {"plan of 0.906 s": "robust plan, 5 %, shorter", "ZVD over ruckig": "ZVD over ruckig"}
+    motions["plan of 0.290 s"] = motions["plan of 0.906 s"]
+    for name, acts, energy in _readme_table("| | may act after [s] |"):
+        machine, motion = name.split(", ")
+        part = {"gantry": gantry, "picker": picker}[machine].split("\n\n")[1]
+        cells = next(row for row in _rows(part.splitlines()) if row[0] == motions[motion])
+        assert f"{float(cells[1]):.3f}" in motion or motion.startswith("ZVD")
+        latest = max(map(float, cells[2:5]))  # at 0, 2 and 5 %
+        assert float(acts) == pytest.approx(latest, abs=0.006)
+        assert float(energy) == pytest.approx(float(cells[-1]), rel=5e-3)
+
+
+@pytest.mark.slow
+def test_what_an_error_of_the_frequency_leaves_is_what_is_computed():
+    link = qa.SingleLinkManipulator()
+    limits = {"acceleration_limit": 40.0, "jerk_limit": 2000.0}
+    task = link.task(qa.deg(30), 0.8, **limits)
+    within = link.task(qa.deg(30), 0.8, band=5e-3, **limits)
+    motions = [
+        evaluate_coefficients(task, []).candidate,
+        qa.JudgedMotion.of_profile(task, qa.shaped_cycloid(task, "zv"), []),
+        plan_move(task).candidate,
+        plan_move(within).candidate,
+    ]
+    rows = _readme_table("| | leaves [mm] |")
+    for (_, left, energy), motion in zip(rows, motions, strict=True):
+        certain = motion.on(motion.task.certain)
+        worst = max(certain.perturbed({"frequency": error}).residual for error in (-0.05, 0.05))
+        assert float(left) == pytest.approx(1e3 * worst, rel=0.03)
+        assert float(energy) == pytest.approx(motion.energy, rel=2e-3)

@@ -22,12 +22,11 @@ def shown_file(page: str, name: str) -> str:
 
 TWO_COMMANDS = [block.strip() for block in blocks("README", "console")[:2]]
 """What .ci/run takes from the README; what stands before them has another fence."""
-NOTEBOOK = next(block.strip() for block in blocks("README", "console") if "jupyter" in block)
 COMMAND_BLOCKS = {
     f"{page}-{number}": block.strip().splitlines()
     for page in PAGES
     for number, block in enumerate(blocks(page, "(?:console|sh)"))
-    if block.strip() not in {*TWO_COMMANDS, NOTEBOOK}
+    if block.strip() not in TWO_COMMANDS
 }
 """The commands of a move of one's own, block by block."""
 
