@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, make_interp_spline
-from scipy.signal import lsim
 
 from quietarm.models import JointMotion
 from quietarm.ocp.simulation.servo import Servo
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 Array = NDArray[np.float64]
 FINEST = 1 / 8000
@@ -92,6 +94,8 @@ def invert(
 
 
 def _spline(times: Array, values: Array) -> BSpline:
+    from scipy.interpolate import make_interp_spline  # slow to load
+
     return make_interp_spline(times, values, k=5)
 
 
@@ -122,6 +126,8 @@ def _following_error(servo: Servo, times: Array, motor: BSpline, needed: Array) 
 
 def _solved(matrix: Array, forcing: Array, times: Array) -> Array:
     """States of x' = matrix x, whose last entry is forced, from rest."""
+    from scipy.signal import lsim  # slow to load
+
     unit = np.eye(len(matrix))
     system = (matrix, unit[:, -1:], unit, np.zeros((len(matrix), 1)))
     return np.atleast_2d(lsim(system, forcing, times)[2].T).T.reshape(len(times), -1)

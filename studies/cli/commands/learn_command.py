@@ -65,7 +65,7 @@ def learn(given: Given) -> None:
             dearer=given.dearer,
             solver=given.read_solver(),
         )
-    files = answer_files(given.output, partial(pictures.motion_figure, learned.plan), learned.plan)
+    files = answer_files(given.output, lambda: pictures.motion_figure(learned.plan), learned.plan)
     if given.machine:
         machine = learned.machine if known is None else learned.machine_from(known)
         files.append((given.machine, machine.save))

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from quietarm.models import RobotOnPath
 from quietarm.ocp import (
@@ -58,6 +58,9 @@ from quietarm.views import pictures
 from quietarm.views.report.acting_words import band_lines
 from quietarm.views.report.off_words import off_words
 from quietarm.views.report.plan_rows import floor_rows, plan_rows, sensitivity_rows
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FREE = {"free": False, "free-smooth": True}
 """Profiles without a parametrisation, and whether the acceleration is continuous."""
@@ -264,13 +267,18 @@ def finish_motion(
     shown = list[str | Sequence[tuple[str, str]]]()
     if isinstance(motion, Floor):
         shown.append(floor_rows(motion, answer.beside))
-        draw = partial(pictures.floor_figure, motion, answer.beside)
     else:
         shown += [*band_lines(motion), plan_rows(motion)]
-        draw = partial(pictures.motion_figure, motion)
         if sensitivities:
             shown += ["\n", "what a parameter that is 1 % larger adds to residual and energy:"]
             shown.append(sensitivity_rows(motion))
     shown += answer.notes
-    files = answer_files(output, draw, motion)
+    files = answer_files(output, partial(_drawn, answer), motion)
     finish(files, *shown, trouble=answer.trouble)
+
+
+def _drawn(answer: FoundMotion) -> Figure:
+    """The picture of a motion; what draws is loaded only here."""
+    if isinstance(answer.motion, Floor):
+        return pictures.floor_figure(answer.motion, answer.beside)
+    return pictures.motion_figure(answer.motion)

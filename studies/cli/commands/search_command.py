@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -49,6 +49,9 @@ from quietarm.views import pictures
 from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.progress import search_display
 from quietarm.views.report.saving import STDOUT, File
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _WHERE = {
     "epsilon": "front --method",
@@ -179,7 +182,10 @@ def _files(output: Sequence[Path], fronts: Sequence[Front], several: bool) -> li
     """Every front as JSON and CSV, of several seeds with the seed in the name; one picture."""
     drawn = [path for path in output if ending_of(path) == PICTURE]
     tables = [path for path in output if path not in drawn]
-    draw = partial(pictures.front_figure, fronts)
+
+    def draw() -> Figure:
+        return pictures.front_figure(fronts)  # what draws is loaded only here
+
     files = list[File]()
     for front in fronts:
         seed = f"-seed{front.record.seed}" if several else ""
