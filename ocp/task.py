@@ -137,7 +137,8 @@ class PointToPoint:
         Largest distance of the tip from its target after arrival [m], static sag included, for all
         errors of the `uncertainty`. The residual limit of plans and fronts is then by default the
         band over the `margin`, and their figure `acts_after` is the time until the tip stays
-        within the band. `Plant.task` takes errors of 5 % of the frequency where it is given none.
+        within the band. Where no uncertainty is given it is 5 % of the frequency; None is none, and
+        `replace` keeps that of the task.
     margin : float, optional
         How many times the residual limit the band is, 1 or more; 3 by default, for what servo and
         dry friction of a machine leave beside the plant's vibration.
@@ -191,7 +192,6 @@ class PointToPoint:
         """The move of a plant within limits of its own, `Plant.limits`; with other keywords.
 
         A limit that is given is in the place of the plant's own of that quantity, and None is none.
-        A band without an uncertainty is for errors of 5 % of the frequency.
 
         Raises
         ------
@@ -205,8 +205,6 @@ class PointToPoint:
                 raise ValueError(has_no(plant.name, "limit of", name, QUANTITIES))
             if bounds:
                 own[QUANTITIES[name].limit] = bounds
-        if others.get("band") is not None:
-            own["uncertainty"] = Uncertainty(RANGE_OF_BAND)
         return cls(plant, target, duration, **{**own, **others})
 
     def __init__(
@@ -224,7 +222,7 @@ class PointToPoint:
         initial: ModalState | None = None,
         final: ModalState | None = None,
         energy: Energy = ABSOLUTE_POWER,
-        uncertainty: Uncertainty | None = None,
+        uncertainty: Uncertainty | None = _NOT_GIVEN,
         torque_speed: Sequence[tuple[float, float]] | None = None,
         *,
         bounds: Mapping[str, Bounds] | None = None,
@@ -232,6 +230,8 @@ class PointToPoint:
         margin: float = MARGIN,
         **limits: Bounds | None,
     ) -> None:
+        if uncertainty is _NOT_GIVEN:
+            uncertainty = None if band is None else Uncertainty(RANGE_OF_BAND)
         given = {
             "torque_limit": torque_limit,
             "speed_limit": speed_limit,

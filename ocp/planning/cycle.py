@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import MIXED
-from quietarm.ocp.checks import not_negative, whole
+from quietarm.ocp.checks import finite, not_negative, quoted, whole
 from quietarm.ocp.energy import CopperLoss
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.simulation.free_vibration import fastest_along, vibration_of
@@ -62,7 +62,7 @@ class Shuttle:
         object.__setattr__(self, "repeat", whole("repeat", self.repeat, 1, MOST_CYCLES))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cycle:
     """What cycles of a motion take and leave.
 
@@ -82,6 +82,21 @@ class Cycle:
     there: JudgedMotion
     shuttle: Shuttle
     errors: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.errors, Mapping):
+            raise TypeError(
+                f"errors are {quoted(self.errors)}; give them by name, as {{'frequency': 0.1}}"
+            )
+        known = {name: finite(f"error of {name}", size) for name, size in self.errors.items()}
+        object.__setattr__(self, "errors", known)
+        perturb_plant(self.there.task.plant, known)  # refuses what the plant does not have
+
+    def __repr__(self) -> str:
+        return (
+            f"Cycle(time={self.time:.4g} s, energy={self.energy:.4g} J, "
+            f"rms_torque={self.rms_torque:.4g}, left={self.left.max():.3g})"
+        )
 
     @property
     def time(self) -> float:

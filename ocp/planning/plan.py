@@ -230,7 +230,7 @@ class Plan(MotionAnswer):
         errors : mapping of str to float, optional
             Relative errors of the plant's parameters, for what is left.
         """
-        return Cycle(self.candidate, Shuttle(dwell, repeat), dict(errors or {}))
+        return Cycle(self.candidate, Shuttle(dwell, repeat), {} if errors is None else errors)
 
     def commanded(self, sample_rate: float = 1000.0) -> Trajectory:
         """Return the motion that a controller is given, rows at a rate [Hz].

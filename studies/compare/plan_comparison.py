@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from quietarm.models import Plant
+from quietarm.models.dimensions import TORQUE
 from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import JudgedMotion, Plan, PointToPoint, QuietarmError
 from quietarm.ocp.checks import takes, unknown
@@ -306,6 +307,8 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
             ),
             "robust": robust,
             "tolerated": f"{100 * TOLERATED:g} %",
+            "has_dry_friction": task.plant.drive is not None and task.plant.drive.coulomb > 0,
+            "effort": TORQUE.of(task.plant.joint),
             "own_durations": any(motion.duration != task.duration for motion in own),
             "ruckig": any("ruckig" in motion.name for motion in motions),
             "toppra": any(motion.name.startswith(TOPPRA) for motion in motions),

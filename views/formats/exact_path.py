@@ -39,10 +39,13 @@ def title_of(plan: Plan) -> str:
     return f"{moved(plan.task)}, {move_of(plan.task)}"
 
 
-def figures_of(plan: Plan) -> str:
+def figures_of(plan: Plan, through_drive: bool = False) -> str:
     """Energy, residual, further figures and limits of a plan, in a line of a source."""
     task = plan.task
     residual = tip_words(plan.residual, task.plant.tip_unit)
     figures = f"Energy {plan.energy:.4g} J, residual {residual} "
     figures += window_words(task.residual_window)
-    return ", ".join([figures, *further_words(plan.candidate, EXPORT), *limit_words(task)])
+    words = [figures, *further_words(plan.candidate, EXPORT), *limit_words(task)]
+    if plan.candidate.inverts_drive and not through_drive:
+        words.append("the path of the load, without the drive")
+    return ", ".join(words)

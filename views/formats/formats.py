@@ -72,7 +72,7 @@ def _drive_notes(form: ExportFormat, answers: Answers) -> list[str]:
     plans = [answer for answer in values_of(answers) if isinstance(answer, Plan)]
     if form.of_the_load and any(plan.candidate.inverts_drive for plan in plans):
         return [
-            f"{form.meaning} has the load's path, without the drive; a table (.csv) and messages "
-            "of ROS have the set points through the drive"
+            f"{form.name}: the load's path, without the drive; tables (.csv), messages of ROS and "
+            "records of CiA 402 have the set points through the drive"
         ]
     return []

@@ -54,7 +54,6 @@ class InterpolatedPosition(ExportFormat):
     name = "cia402"
     endings = (".cia402",)
     meaning = "records of CiA 402's interpolated position mode"
-    of_the_load = True
     settings = (
         ExportSetting("period", 0.001, "Period of the records, 60C2h [s].", 1e-4, 0.255, unit="s"),
         ExportSetting(
@@ -104,8 +103,7 @@ class _Records:
         self.zero = zero
         plant = plan.task.plant
         self.scales = polarity * _scales(plant, increments, increments_per_revolution)
-        self.times = times_of(plan, 1 / self.period)
-        positions, speeds, _ = motion_at(plan, self.times)
+        self.times, positions, speeds = _set_points(plan, 1 / self.period)
         self.positions = self._counted(zero + positions * self.scales, "position")
         self.speeds = self._counted(speeds * self.scales, "speed")
 
@@ -146,7 +144,8 @@ class _Records:
         ]
         mode = _SUB_MODES[self.interpolation]
         return [
-            f"CiA 402 interpolated position: {title_of(self.plan)}. {figures_of(self.plan)}.",
+            f"CiA 402 interpolated position: {title_of(self.plan)}. "
+            f"{figures_of(self.plan, through_drive=True)}.",
             f"6060h = 7, 60C2h:01 = {units}, 60C2h:02 = {index}, 60C0h = {mode}"
             + (" (the manufacturer's own number may be another)" if mode else ""),
             f"{', '.join(scales)}, {self.zero} at 0" + ("; speeds in increments/s" if mode else ""),
@@ -157,6 +156,8 @@ class _Records:
     def left(self) -> str:
         """What the drive's interpolation leaves, in words."""
         plan = self.plan
+        if plan.candidate.inverts_drive:
+            return "set points through the drive, whose load follows the planned path"
         points = [(self.positions - self.zero) / self.scales, self.speeds / self.scales]
         if len(self.times) > MOST_POINTS:
             return ""
@@ -174,6 +175,20 @@ class _Records:
         residual = residual_through(plan, self.times, along, self.interpolation)
         words = tip_words(residual, plant.tip_unit)
         return f"{between} is {far} off the plan; the plan{of_path} then leaves {words}"
+
+
+def _set_points(plan: Plan, rate: float) -> tuple[Array, Array, Array]:
+    """Times, positions and speeds of a plan, through its drive if that is inverted."""
+    if plan.candidate.inverts_drive:
+        commanded = plan.commanded(rate)
+        joints = commanded.sample.joints
+        positions, speeds = (
+            np.column_stack([joint[order] for joint in joints]) for order in (0, 1)
+        )
+        return commanded.time, positions, speeds
+    times = times_of(plan, rate)
+    positions, speeds, _ = motion_at(plan, times)
+    return times, positions, speeds
 
 
 def _scales(plant: Plant, increments: float, per_revolution: float | None) -> Array:

@@ -121,3 +121,17 @@ def test_cycles_on_a_drive_begin_as_a_move_and_build_up_as_the_structure_on_its_
     assert left.max() > 1.5 * left[0]
     assert move.cycle(0.3, 6).on_drive() is None
     assert moved.cycle(0.0, 6).on_drive() is None
+
+
+@pytest.mark.parametrize(
+    ("errors", "words"),
+    [
+        ({"freq": 0.1}, "freq"),
+        ({"frequency": "5%"}, "error of frequency"),
+        ({"frequency": -5}, "frequency"),
+        (0.05, "give them by name"),
+    ],
+)
+def test_errors_that_the_plant_cannot_have_are_refused_at_once(move, errors, words):
+    with pytest.raises((ValueError, TypeError), match=words):
+        move.cycle(errors=errors)

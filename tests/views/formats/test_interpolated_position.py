@@ -130,3 +130,17 @@ def test_what_no_drive_takes_is_refused(settings, told, tmp_path):
 def test_revolutions_are_of_joints_that_turn(tmp_path):
     with pytest.raises(ValueError, match="is 1000, and no joint turns; give increments, in a m"):
         export_plan(plan_of(AXIS), tmp_path / "a.cia402", increments_per_revolution=1000)
+
+
+def test_a_plan_of_a_drive_has_its_set_points_through_the_drive(tmp_path):
+    drive = qa.Drive(position_loop=60, speed_loop=40, reset_time=0.03)
+    plan = plan_of(PointToPoint(LinearAxis(drive=drive), 0.3, 0.5))
+    header, _, rows = records_of(plan, tmp_path / "move.cia402", period=0.002, increments=1e6)
+    asked = plan.commanded(500)
+    np.testing.assert_allclose(rows[:, 0], 1e3 * asked.time)
+    (joint,) = asked.sample.joints
+    assert np.abs(rows[:, 1] / 1e6 - joint.angle).max() <= 0.5e-6  # whole increments
+    assert np.abs(rows[:, 1] / 1e6 - plan.sampled(asked.time).sample.path.angle).max() > 1e-5
+    assert "set points through the drive" in header[-1]
+    export_plan(plan, tmp_path / "move.c")
+    assert "the path of the load, without the drive" in (tmp_path / "move.h").read_text()
