@@ -133,6 +133,7 @@ class Turning(Sound):
     """A tip whose displacement is seen along an axis that the joint turns."""
 
     name: ClassVar[str] = "turning-probe"
+    tip_displacements = qa.Plant.tip_displacements
 
     def tips_at(self, path, W):
         return [W[0] * ca.cos(path.angle)]
@@ -142,6 +143,7 @@ def test_rates_of_tips_are_those_of_their_displacements():
     # w = W cos(q): w' = W' cos(q) - W q' sin(q), and by the product rule once more
     q, v, a, W, dW, ddW = 0.4, 1.5, -2.0, 0.03, 0.2, -5.0
     joint, sine, cosine = JointMotion(q, v, a), np.sin(q), np.cos(q)
+    assert [float(w) for w in Turning().tip_displacements([W])] == [W]  # those at the angle 0
     (speed,) = Turning().tip_speeds(joint, [W], [dW])
     assert float(speed) == pytest.approx(dW * cosine - W * v * sine)
     (acceleration,) = Turning().tip_accelerations(joint, [W], [dW], [ddW])
