@@ -46,7 +46,14 @@ QUICK = [
 """Those of the simulation that are done in seconds: the first that fails ends the tests."""
 SLOW = ["ocp/solvers/test_batch.py", "ocp/simulation/test_derivatives_of_the_rollout.py"]
 TESTS = {
-    "models/plant.py": ["models", "ocp/test_task.py"],
+    "models/plant.py": [
+        "models/test_plants.py",
+        "models/test_contract.py",
+        "ocp/test_several_joints.py",
+        "machine/identify/test_parameter_kinds.py",
+        "models",
+        "ocp/test_task.py",
+    ],
     "models/single_link.py": ["models"],
     "models/dual_link.py": ["models"],
     "models/arm_on_flexible_link.py": ["models"],
@@ -57,11 +64,12 @@ TESTS = {
         "ocp/test_energies.py",
         *SLOW,
     ],
-    "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK],
+    "ocp/profiles/joint_profile.py": ["ocp/profiles", *QUICK, "ocp/planning/test_solver.py"],
     "ocp/profiles/check_profile.py": ["ocp/profiles"],
     "ocp/profiles/differentiate.py": ["ocp/profiles", *QUICK],
     "ocp/profiles/cycloid.py": [
         "ocp/profiles/test_polynomial.py",
+        "ocp/profiles/test_own.py",
         "ocp/profiles/test_shaped_inputs.py",
     ],
     "ocp/simulation/free_vibration.py": [*QUICK, "ocp/planning/test_shaping.py"],

@@ -56,6 +56,7 @@ def test_the_arms_link_is_clamped_at_the_origin_and_bears_a_rigid_arm():
     assert [body.rigid for body in (clamp, link, arm, motor)] == [True, False, True, True]
     assert clamp.points.mean(axis=0) == pytest.approx([0, 0])  # as far up as down
     assert clamp.points[:, 0] == pytest.approx([0, 0])
+    assert np.ptp(clamp.points[:, 1]) < np.linalg.norm(np.diff(arm.points, axis=0))
     assert link.points[0] == pytest.approx([0, 0])
     assert motor.points.tolist() == [link.points[-1].tolist()]
 

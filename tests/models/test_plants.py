@@ -1,8 +1,10 @@
 """The plants: the paper's equations, parameters, names."""
 
+import sys
 from dataclasses import dataclass
 from typing import ClassVar
 
+import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,7 +13,8 @@ from sound_plant import Sound
 from third_opinion import EQUATIONS, PHI
 
 import quietarm as qa
-from quietarm.models import JointMotion
+from quietarm import models
+from quietarm.models import JointMotion, known_plants
 from quietarm.models.dimensions import ACCELERATION
 
 motions = st.floats(-10.0, 10.0)
@@ -96,3 +99,69 @@ class Pair(Sound):
 def test_joints_and_tips_are_called_by_their_numbers_if_there_are_several():
     assert (Sound().joint_names, Sound().tip_names) == (("joint",), ("tip",))
     assert (Pair().joint_names, Pair().tip_names) == (("joint_1", "joint_2"), ("tip_1", "tip_2"))
+
+
+def test_a_path_is_of_several_joints_or_stated():
+    @dataclass(frozen=True)
+    class OnPath(Sound):
+        along_path = True
+
+    assert [plant.has_path for plant in (Sound(), Pair(), OnPath())] == [False, True, True]
+    assert not any(plant.has_path for plant in PLANTS.values())  # one joint, whose angle they have
+
+
+def test_parameters_are_of_the_kind_that_is_stated_or_their_unit_has():
+    kinds = qa.SingleLinkManipulator.parameter_kinds()
+    expected = {"zeta": "damping", "omega": "frequency", "phi": "other"}
+    assert {name: kinds[name] for name in expected} == expected
+
+
+def test_a_torque_without_a_joint_is_not_left_out():
+    @dataclass(frozen=True)
+    class TorqueTooMany(Pair):
+        torque = qa.Plant.torque
+
+        def torques(self, path, W, dW, ddW):
+            return [path.acceleration] * 3
+
+    with pytest.raises(ValueError, match="argument"):
+        TorqueTooMany().torque(JointMotion(0.1, 0.2, 0.3), [0.0], [0.0], [0.0])
+
+
+@dataclass(frozen=True)
+class Turning(Sound):
+    """A tip whose displacement is seen along an axis that the joint turns."""
+
+    name: ClassVar[str] = "turning-probe"
+    tip_displacements = qa.Plant.tip_displacements
+
+    def tips_at(self, path, W):
+        return [W[0] * ca.cos(path.angle)]
+
+
+def test_rates_of_tips_are_those_of_their_displacements():
+    # w = W cos(q): w' = W' cos(q) - W q' sin(q), and by the product rule once more
+    q, v, a, W, dW, ddW = 0.4, 1.5, -2.0, 0.03, 0.2, -5.0
+    joint, sine, cosine = JointMotion(q, v, a), np.sin(q), np.cos(q)
+    assert [float(w) for w in Turning().tip_displacements([W])] == [W]  # those at the angle 0
+    (speed,) = Turning().tip_speeds(joint, [W], [dW])
+    assert float(speed) == pytest.approx(dW * cosine - W * v * sine)
+    (acceleration,) = Turning().tip_accelerations(joint, [W], [dW], [ddW])
+    expected = ddW * cosine - 2 * dW * v * sine - W * (a * sine + v**2 * cosine)
+    assert float(acceleration) == pytest.approx(expected)
+    assert Sound().tip_speeds(joint, [W], [dW]) == [dW]  # the same everywhere: by the mode alone
+    assert Sound().tip_accelerations(joint, [W], [dW], [ddW]) == [ddW]
+
+
+def test_a_file_that_is_added_to_the_models_is_known_by_its_plant(tmp_path, monkeypatch):
+    (tmp_path / "added_probe.py").write_text(
+        "from sound_plant import Sound\nclass Added(Sound):\n    name = 'added-probe'\n"
+    )
+    beside = str(tmp_path / "plant.py")
+    monkeypatch.setattr(models, "__path__", [*models.__path__, str(tmp_path)])
+    monkeypatch.setattr(sys.modules["quietarm.models.plant"], "__file__", beside)
+    monkeypatch.setattr(models, "added_probe", None, raising=False)  # taken away again
+    try:
+        assert known_plants()["added-probe"].__name__ == "Added"
+    finally:
+        sys.modules.pop("quietarm.models.added_probe", None)

@@ -8,6 +8,7 @@ from third_opinion import COEFFICIENTS
 
 import quietarm as qa
 from quietarm.ocp.limits import QUANTITIES, Limit
+from quietarm.ocp.profiles.free_motion import FreeMotion
 
 pi = math.pi
 
@@ -88,3 +89,18 @@ def test_after_arrival_alone_the_tip_swings_as_in_the_whole_motion(tasks):
     later = [0.9, 1.0]
     whole = candidate.sample([0.1, *later])
     assert candidate.sample(later).tips == pytest.approx(whole.tips[1:], rel=1e-9)
+
+
+def test_a_motion_in_pieces_has_weights_of_the_whole_and_no_jerk_where_it_jumps(tasks):
+    # From rest to rest by a constant acceleration and its negative: a (T/2)^2 is the angle.
+    task = tasks["single link"]
+    push = task.span / (task.duration / 2) ** 2
+    free = FreeMotion([0.0, task.duration / 2, task.duration], [push, -push], [0.0, 0.0])
+    candidate = qa.JudgedMotion.of_free_motion(task, free)
+    for weighed in (candidate, qa.evaluate_coefficients(task, []).candidate):
+        assert weighed.weights.sum() == pytest.approx(task.duration, rel=1e-12)
+        way = weighed.weights @ np.ravel(weighed.moving.path.speed)
+        assert way == pytest.approx(task.span, rel=1e-9)
+    assert candidate.range_of(QUANTITIES["jerk"]) == (-math.inf, math.inf)
+    with pytest.raises(ValueError, match="a free motion has samples of its own"):
+        candidate.sample([0.1])

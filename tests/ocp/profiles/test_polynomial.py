@@ -128,3 +128,25 @@ def test_a_duration_may_be_as_short_as_the_profile_allows():
     assert shaped.checked([], shaped.least_duration) == ()
     with pytest.raises(ValueError, match="too short for the "):
         shaped.checked([], 0.99 * shaped.least_duration)
+
+
+def test_derivatives_go_up_to_the_third():
+    path = qa.CycloidPolynomial(0).path([], 0.0, 1.0, 0.8)
+    with pytest.raises(ValueError, match="derivative order is 4; give 0, 1, 2 or 3"):
+        path(0.1, 4)
+    with pytest.raises(ValueError, match="derivative order is -1; give a whole number from 0 up"):
+        path(0.1, -1)
+
+
+def test_a_motion_has_its_jerk_where_it_is_asked_for():
+    move = [], 0.3, 0.0, 1.0, 0.8
+    assert qa.CycloidPolynomial(0).motion(*move).jerk is None
+    # eq (1) of the plain cycloid, differentiated three times: 4 pi^2 cos(2 pi t/TE) / TE^3
+    expected = 4 * math.pi**2 * math.cos(0.6 * math.pi) / 0.8**3
+    assert float(qa.CycloidPolynomial(0).motion(*move, jerk=True).jerk) == pytest.approx(expected)
+
+
+def test_a_spline_has_a_control_point_less_than_its_degree_at_least():
+    assert qa.CycloidSpline(4).size == 4  # docs/profiles.md: 4 to 32
+    with pytest.raises(ValueError, match="terms is 3; give a whole number from 4 up"):
+        qa.CycloidSpline(3)

@@ -110,6 +110,11 @@ def test_a_power_of_degree_four_is_told_exactly(steps):
         assert found[1][step] == pytest.approx(beyond.deriv()(0.5), abs=1e-9)
 
 
+def test_a_step_alone_has_no_neighbours():
+    found = [(ca.DM([[1.0, -2.0, 5.0]]) @ weights).full() for weights in beyond_quadratic(1)]
+    assert [x.tolist() for x in found] == [[[0.0]], [[0.0]]]
+
+
 @pytest.mark.parametrize(
     ("target", "halfway", "overshoot"), [(1.0, 1.25, 0.25), (1.0, -0.3, 0.0), (-1.0, -1.25, 0.25)]
 )

@@ -11,7 +11,7 @@ from sound_plant import Sound
 
 import quietarm as qa
 from quietarm.ocp import FreeVibration, perturb_plant
-from quietarm.ocp.simulation.free_vibration import fastest_along, outermost
+from quietarm.ocp.simulation.free_vibration import extreme_rows, fastest_along, outermost
 
 
 def _decay(W, dW, omega, zeta, t):
@@ -151,6 +151,62 @@ def test_after_arrival_the_joint_neither_moves_nor_accelerates():
     assert vibration.modes == [(pytest.approx(10.0), pytest.approx(0.0, abs=1e-12))]
     with pytest.raises(ValueError, match="read-only"):
         vibration.rows[0] = 0.0
+
+
+@dataclass(frozen=True)
+class AcrossAndAlong(qa.DualLinkManipulator):
+    """One tip that moves in a plane, whose displacements count along sixteen lines."""
+
+    name: ClassVar[str] = "across-and-along-probe"
+
+    @property
+    def tip_lines(self):
+        turned = np.arange(16) * np.pi / 16
+        return np.column_stack([np.cos(turned), np.sin(turned)])
+
+
+@pytest.mark.usefixtures("_plants_of_this_test_are_forgotten")
+def test_rows_along_lines_miss_a_thousandth_of_a_peak():
+    vibration = FreeVibration(AcrossAndAlong(), 1.0, 1.0)
+    states = np.random.default_rng(0).standard_normal((300, 4))
+    kept = np.abs(states @ vibration.rows.T).max(axis=1)
+    # 0.1 radians apart, half of them from the peak: 0.05^2 / 2
+    np.testing.assert_allclose(kept, vibration.peak(states), rtol=1.3e-3)
+
+
+@pytest.mark.parametrize("unit", [1e-7, 1.0, 1e7])
+@pytest.mark.parametrize("dimensions", [3, 4])
+def test_rows_that_are_not_in_a_plane_are_all_kept_in_any_unit(unit, dimensions):
+    directions = np.eye(4)[:dimensions]
+    assert extreme_rows(unit * directions, 1).tolist() == (unit * directions).tolist()
+
+
+def farthest(rows):
+    """Rows, and their negatives, that are the farthest in one of many directions of a plane."""
+    both = np.vstack([rows, -rows])
+    turned = np.arange(0.5e-3, 2 * np.pi, 1e-3)
+    return {*map(tuple, both[np.argmax(both @ [np.cos(turned), np.sin(turned)], axis=0)])}
+
+
+def test_of_rows_in_a_plane_the_farthest_are_kept():
+    # Every second row of a spiral inwards is within the line between its neighbours.
+    angle = np.arange(0.0, 4.0, 0.1)
+    spiral = np.exp(-0.1 * angle)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    spiral[1::2] *= 0.99
+    kept = extreme_rows(spiral, 1)
+    assert {*map(tuple, kept), *map(tuple, -kept)} == farthest(spiral)
+    assert 10 < len(kept) < 20
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_directions_that_are_kept_are_the_corners_of_the_hull(seed):
+    # Points of a grid, none the negative of another, that lie often on one line.
+    random = np.random.default_rng(seed)
+    half = [(x, y) for x in range(-3, 4) for y in range(4) if (y, x) > (0, 0)]
+    points = random.permutation(half)[:9] * random.choice([-1.0, 1.0], (9, 1))
+    kept = points[outermost([points])]
+    assert {*map(tuple, kept), *map(tuple, -kept)} == farthest(points)
+    assert 2 * len(kept) == len(farthest(points))
 
 
 def test_only_outermost_directions_are_kept():
