@@ -113,6 +113,7 @@ def test_a_plant(follow):
     assert "move_at" in Path("move.c").read_text()
 
 
+@pytest.mark.slow
 def test_a_profile(follow, refused):
     follow("A profile")
     answers = [Plan.load("plan.json"), Front.load("front.json"), Front.load("search.json")]
@@ -128,6 +129,7 @@ def test_a_profile(follow, refused):
     assert "minimum-jerk" in refused(f"plan {move} --profile minimum-jerk")
 
 
+@pytest.mark.slow
 def test_an_energy_in_its_first_commands(follow, refused):
     follow("An energy", only="plan evaluate export")
     plan = Plan.load("plan.json")

@@ -104,6 +104,7 @@ def test_what_cannot_be_judged_is_refused(robot, trapezoid_file, change, words):
         evaluate_as_timed(robot, trapezoid_file)
 
 
+@pytest.mark.slow
 def test_sudden_accelerations_are_what_rings(robot, trapezoid_file):
     answer = evaluate_as_timed(robot, trapezoid_file)
     (frequency, left), (_, less), *_ = answer.swings

@@ -71,6 +71,7 @@ def test_a_dataset_is_named(call, folder, monkeypatch):
     assert not list(folder.iterdir())
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("room", [0, 1])
 def test_header_and_source_are_both_there_or_neither(call, saved, full_after, room):
     full_after(room)

@@ -111,6 +111,7 @@ def test_what_asks_for_too_much_is_refused_with_the_bound(call, files):
         assert words in err
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", ["pipe", "zero", "loop"])
 def test_what_never_ends_is_not_read(call, endless, name):
     words = "cannot be read: too many levels" if name == "loop" else "no ordinary file; save it"

@@ -108,6 +108,7 @@ def test_matlab_reads_columns_and_coefficients(plan, tmp_path):
     assert read["duration_s"].item() == 0.8
 
 
+@pytest.mark.slow
 def test_the_command_writes_source_and_header(call, plan, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     plan.save("plan.json")
@@ -159,6 +160,7 @@ def residual_by_small_steps(task, acceleration, speed):
     return link.phi * np.abs(swing * np.exp(-decay * t)).max()
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     ("typed", "begins"),
     [

@@ -63,6 +63,7 @@ def test_units_are_those_of_each_joint(tmp_path):
     assert text.startswith("# joints: 'x' in m, 'radial-axis' in rad\n")
 
 
+@pytest.mark.slow
 def test_an_exported_move_is_a_path_again(folder, call, plan):
     write_robot(folder, ARM, ARM_FILE)
     plan.save("plan.json")

@@ -147,6 +147,7 @@ def test_a_limit_far_off_does_not_silence_the_warning_of_high_acceleration(call,
     assert ("times the plain cycloid's" in out) is warned
 
 
+@pytest.mark.slow
 def test_a_linear_axis_is_in_metres_and_newtons_from_the_line_to_the_c(call, done, folder):
     out = done(
         "plan linear-axis --target 300mm --duration 0.5 "

@@ -95,6 +95,7 @@ def test_limits_of_joints_that_turn_and_slide_are_typed_by_name(folder, call, re
     assert "the robot has both; give a limit of each by its name" in message
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("columns", ["position:mm,force:kN", "angle:mm,torque"])
 def test_a_linear_axis_has_columns_of_positions(folder, call, columns):
     axis = qa.PointToPoint(qa.LinearAxis(), target=0.3, duration=0.8)
