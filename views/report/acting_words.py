@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from quietarm.ocp import Front, Plan, PointToPoint
+from quietarm.ocp import Front, Plan
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.views.tips import tip_words
-
-if TYPE_CHECKING:
-    from quietarm.machine.recordings.recorded_path import RecordedPath
 
 
 def acting_words(motion: JudgedMotion) -> str:
@@ -45,11 +41,9 @@ def ranges_words(ranges: Mapping[str, float]) -> str:
     return f"for errors of {' and of '.join(parts)}"
 
 
-def path_lines(task: PointToPoint, path: RecordedPath) -> list[str]:
+def path_lines(motion: JudgedMotion) -> list[str]:
     """The first line of the answer of a recorded path with a band; none without one."""
-    if task.band is None:
-        return []
-    return [acting_words(JudgedMotion.of_free_motion(task, path.motion))]
+    return [] if motion.task.band is None else [acting_words(motion)]
 
 
 def band_lines_of_front(front: Front) -> list[str]:

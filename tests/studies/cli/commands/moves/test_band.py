@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,18 @@ def test_without_an_error_the_range_is_five_percent_and_is_said(done):
     out = done(f"evaluate {PAPER} --band 1mm --output plan.json")
     assert "the band is for frequency errors up to 5 %, as no --error is given" in out
     assert qa.Plan.load("plan.json").task.ranges == {"frequency": 0.05}
+
+
+def test_every_row_of_a_path_is_of_the_worst_of_its_scenarios(done, folder):
+    rows = [f"{k / 10},{x}" for k, x in enumerate([0, 1, 3, 6, 8, 9, 9.5])]
+    (folder / "path.csv").write_text("\n".join(["time_s,position_mm", *rows]))
+    out = done("evaluate linear-axis --path path.csv --band 0.5mm --error frequency=20%")
+    first = re.search(r"may act after ([0-9.]+) s: within 0.5 mm", out)[1]
+    assert float(re.search(r"acts after +([0-9.]+) s", out)[1]) == pytest.approx(float(first), 5e-3)
+    worst = re.search(r"residual \(F1\) +([0-9.]+) mm at the tip, worst of 3 scenarios", out)[1]
+    at_ends = re.findall(r"residual +([0-9.]+) mm with frequency [-+]20 %", out)
+    assert len(set(at_ends)) == 2
+    assert worst == max(at_ends, key=float)
 
 
 @pytest.mark.slow
