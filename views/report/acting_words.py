@@ -47,15 +47,18 @@ def path_lines(motion: JudgedMotion) -> list[str]:
 
 
 def band_lines_of_front(front: Front) -> list[str]:
-    """The first line of a front whose task has a band: of its cheapest motion that keeps it."""
+    """The first line of a front whose task has a band: of its motion that acts first.
+
+    Of several the cheapest.
+    """
     limit = front.task.band_limit
     if limit is None:
         return []
-    within = [point for point in front.points if point.residual <= limit]
-    if not within:
+    if all(point.residual > limit for point in front.points):
         return [f"no motion leaves less than {tip_words(limit, 'm')}, the band over its margin"]
-    point = min(within, key=lambda point: point.energy)
-    return [f"{acting_words(front.judged(point))}, by {point.energy:.4g} J"]
+    motions = [front.judged(point) for point in front.points]
+    first = min(motions, key=lambda motion: (motion.acts_after, motion.energy))
+    return [f"{acting_words(first)}, by {first.energy:.4g} J"]
 
 
 def band_lines(plan: Plan) -> list[str]:

@@ -9,6 +9,7 @@ import pytest
 
 import quietarm as qa
 from quietarm.ocp import FIGURES, TimeFront
+from quietarm.ocp.robustness import worst_of
 
 PAPER = "single-link --target 30deg --duration 0.8 --coefficients=0.003347,-0.1697"
 """The paper's two terms, which leave 0.05 mm of the nominal plant."""
@@ -106,6 +107,38 @@ def test_a_plan_without_an_error_says_what_it_leaves_where_the_frequency_is_off(
     assert "if the frequency" not in done(
         "plan single-link --target 30deg --duration 0.8 --terms 6 --error frequency=1%"
     )
+
+
+@pytest.mark.slow
+def test_a_front_begins_with_its_motion_that_acts_first(done):
+    """Its still end keeps rest at -5, 0 and 5 % alone, and says so."""
+    line = "front linear-axis --target 0.3 --duration 0.6 --terms 8 --points 3 --starts 1"
+    out = done(f"{line} --band 0.01mm --output front.json --quiet")
+    front = qa.Front.load("front.json")
+    motions = [front.judged(point) for point in front.points]
+    first = min(motions, key=lambda motion: motion.acts_after)
+    assert out.startswith(f"may act after {first.acts_after:.3g} s: within 0.01 mm")
+    assert f", by {first.energy:.4g} J\n" in out
+    cheapest = front.cheapest(front.task.band_limit)
+    cheaper = motions[front.points.index(cheapest)]
+    assert cheaper.acts_after > first.acts_after
+    assert cheaper.energy < first.energy
+    assert motions[0].residual < 1e-6 < worst_of(motions[0]).residual
+    (end,) = [line for line in out.splitlines() if "least residual" in line]
+    assert "J at 0.001 mm or less in the scenarios, acts after" in end
+    assert "worst case 0.00" in end
+    assert "at rest" not in out
+    assert "keep their residuals in the scenarios alone" in out
+    assert "--objectives time,energy, or quietarm plan --band" in out
+
+
+def test_what_is_not_feasible_names_the_band_that_was_typed(refused):
+    line = "plan linear-axis --target 0.3 --duration 0.3 --terms 2 --starts 1 --quiet"
+    said = refused(f"{line} --acceleration-limit 20 --band 0.1mm", status=1)
+    assert "with residual <= 0.03333 mm (a band of 0.1 mm with a margin of 3), accel" in said
+    assert re.search(r"unchanged: band [0-9.]+ mm", said)
+    wider = float(re.search(r"band ([0-9.]+) mm;", said)[1])
+    assert 1 < wider < 300
 
 
 @pytest.mark.slow
