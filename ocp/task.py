@@ -135,10 +135,10 @@ class PointToPoint:
         joint forces [N] at speeds [m/s]. See `TorqueSpeedLine`.
     band : float, optional
         Largest distance of the tip from its target after arrival [m], static sag included, for all
-        errors of the `uncertainty`. The residual limit of plans and fronts is then by default the
-        band over the `margin`, and their figure `acts_after` is the time until the tip stays
-        within the band. Where no uncertainty is given it is 5 % of the frequency; None is none, and
-        `replace` keeps that of the task.
+        errors of the `uncertainty`; it is less than the tip moves. The residual limit of plans and
+        fronts is then by default the band over the `margin`, and their figure `acts_after` is the
+        time until the tip stays within the band. Where no uncertainty is given it is 5 % of the
+        frequency; None is none, and `replace` keeps that of the task.
     margin : float, optional
         How many times the residual limit the band is, 1 or more; 3 by default, for what servo and
         dry friction of a machine leave beside the plant's vibration.
@@ -328,6 +328,7 @@ class PointToPoint:
                     stacklevel=3,
                 )
         self._check_move(unit)
+        self._check_band_of_move()
         self._check_friction()
         for plant in self.perturbed_plants:
             check_contract(plant)
@@ -369,6 +370,19 @@ class PointToPoint:
                 f"{self.plant.tip_unit}; give a residual limit and an uncertainty in its place"
             )
         object.__setattr__(self, "band", positive("band", self.band, "m"))
+
+    def _check_band_of_move(self) -> None:
+        """Refuse a band that the tip is within before it moves, where its way is known."""
+        reach = self.plant.tip_reach
+        if reach is None and self.plant.joint == LINEAR:
+            reach = 1.0
+        if self.band is None or reach is None or self.plant.has_path:
+            return
+        way = abs(reach * self.span)
+        if self.band >= way:
+            raise ValueError(
+                f"band is {self.band:g} m, and the tip moves {way:.4g} m; give a band below it"
+            )
 
     @property
     def band_limit(self) -> float | None:

@@ -30,7 +30,7 @@ from quietarm.views.report.words import (
     move_of,
     moved,
     raised,
-    residual_words,
+    scenarios_words,
     title_of_picture,
     window_words,
 )
@@ -263,7 +263,7 @@ def _title(structure: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan = structure.line.plan
     task = structure.line.plan.task
-    residual = residual_words(plan.residual, task)
+    residual = scenarios_words(plan.residual, plan.worst, task)
     residual = "at rest" if residual == "rest" else residual
     lines = [
         f"{structure.line.label}, {structure.scale_words}",

@@ -27,6 +27,7 @@ from quietarm.ocp.planning.best_of_starts import (
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes, certify_one
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.request import Request
+from quietarm.ocp.planning.residual_limit import band_words
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
 from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scenarios
 from quietarm.ocp.rest import rest_of
@@ -68,6 +69,13 @@ def _keep_limit(request: Request) -> Plan:
     if plan.worst is None or (plan.excess or 0.0) <= OVERRUN:
         return plan
     unit = request.task.plant.tip_unit
+    band = band_words(request.task, request.residual_limit)
+    if band:
+        raise SolverFailedError(
+            f"the residual is {1e3 * plan.worst.residual:.4g} mm in the worst case, above its "
+            f"limit of {1e3 * request.residual_limit:.4g} mm ({band}): give a wider band, more "
+            f"{request.profile.term}s or a smaller uncertainty"
+        )
     raise SolverFailedError(
         f"the residual is {plan.worst.residual:.4g} {unit} in the worst case, above its "
         f"limit of {request.residual_limit:g} {unit}: give a larger residual limit, more "

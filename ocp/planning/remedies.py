@@ -12,6 +12,7 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveSta
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.certify import by_cvodes, certify_one
+from quietarm.ocp.planning.residual_limit import band_words
 from quietarm.ocp.rest import still_of
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, Program, Solution
 from quietarm.ocp.solvers.solver import Solver
@@ -132,7 +133,7 @@ def unmet(
         if otherwise:
             ended = f"{ended.partition(';')[0]}; {otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
-    bounds = ", ".join(_stated(limit) for limit in limits if limit.size < np.inf)
+    bounds = ", ".join(_stated(task, limit) for limit in limits if limit.size < np.inf)
     several = "removing any single one of these limits does not help, so widen several"
     feasible = _offers(task, limits, least) or several
     return InfeasibleTaskError(
@@ -143,17 +144,27 @@ def unmet(
 def _offers(task: PointToPoint, limits: Sequence[Limit], least: Mapping[str, float]) -> str:
     """Least peaks that a limit does not keep, as limits that would do."""
     remedies = [
-        f"{limit.label} limit {limit.describe(least[limit.name] * _ROOM)}"
+        _offer(task, limit, least[limit.name] * _ROOM)
         for limit in limits
         if limit.name in least and not limit.keeps(least[limit.name], at_rest=still_of(task))
     ]
     return f"feasible with all else unchanged: {' or '.join(remedies)}" if remedies else ""
 
 
-def _stated(limit: Limit) -> str:
-    """A limit in words."""
+def _offer(task: PointToPoint, limit: Limit, peak: float) -> str:
+    """A limit that would do; of a residual limit that follows from a band the band."""
+    if limit.name == RESIDUAL and band_words(task, limit.size):
+        return f"band {1e3 * task.margin * peak:.4g} mm"
+    return f"{limit.label} limit {limit.describe(peak)}"
+
+
+def _stated(task: PointToPoint, limit: Limit) -> str:
+    """A limit in words; a residual limit that follows from a band with the band."""
     if limit.name == RESIDUAL and limit.size == 0:
         return "the tip at rest on arrival"
+    band = band_words(task, limit.size) if limit.name == RESIDUAL else ""
+    if band:
+        return f"{limit.label} <= {1e3 * limit.size:.4g} mm ({band})"
     return f"{limit.label} {'<=' if limit.is_peak else 'within'} {limit.bounds}"
 
 

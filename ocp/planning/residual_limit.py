@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from quietarm.ocp.checks import not_negative
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
@@ -36,6 +38,16 @@ def checked_residual_limit(task: PointToPoint, stated: float | None) -> float:
         "residual limit is 0, but no motion arrives at rest in all scenarios; omit it "
         "(default: 5 % of the plain cycloid's largest deflection) or give one above 0"
     )
+
+
+def band_words(task: PointToPoint, limit: float) -> str:
+    """The band that a residual limit [m] follows from: "a band of 0.1 mm with a margin of 3".
+
+    Empty where the limit is another.
+    """
+    if task.band is None or not math.isclose(limit, task.band / task.margin, rel_tol=1e-9):
+        return ""
+    return f"a band of {1e3 * task.band:g} mm with a margin of {task.margin:g}"
 
 
 def refuse_beyond_band(task: PointToPoint) -> None:

@@ -52,12 +52,18 @@ _RARE = {
     "s": (100.0, "seconds", "milliseconds", "ms"),
 }
 """Beyond this a number alone is asked about: it was easily meant in the other unit."""
+_MOST_BAND = math.nextafter(0.02, 0.0)
+"""The same of a band [m], which is a millimetre or less as a rule: 0.02 is asked about."""
 
 
-def parse_usual(unit: str, what: str, text: str) -> float:
-    """Read a quantity; a number alone that is rarely meant in SI is asked about."""
+def parse_usual(unit: str, what: str, text: str, most: float | None = None) -> float:
+    """Read a quantity; a number alone that is rarely meant in SI is asked about.
+
+    That is one beyond what its kind has at `most`, or beyond this number where one is given.
+    """
     value = parse_quantity(text, unit, what)
-    most, name, likely, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
+    usual, name, likely, short = _RARE.get(what) or _RARE.get(unit, (math.inf, "", "", ""))
+    most = usual if most is None else most
     if math.isfinite(value) and abs(value) > most and is_number(text):
         raise ValueError(
             f"{text} is in {name}; were {likely} meant? give {text}{short}, or {text}{unit}"
@@ -137,7 +143,7 @@ def parse_of_plant(
     if name == TORQUE_SPEED:
         return parse_torque_speed(text, joint)
     if name == BAND:
-        return parse_usual("m", "a length", text)
+        return parse_usual("m", "a length", text, _MOST_BAND)
     if name == RESIDUAL_LIMIT:
         return parse_usual(tip_unit, "a length" if tip_unit == "m" else "an angle", text)
     quantities = quantities_of(joint, tip_unit)

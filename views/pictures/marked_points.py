@@ -42,5 +42,7 @@ def mark_points(ax: Axes, front: Array, task: PointToPoint) -> None:
 
 def _place(name: str, residual: float, task: PointToPoint) -> str:
     """Where a named point is, unless its name says so."""
-    words = "rest" if is_at_rest(residual, task) else tip_words(residual, task.plant.tip_unit)
+    words = tip_words(residual, task.plant.tip_unit)
+    if is_at_rest(residual, task):
+        words = "rest in the scenarios" if task.ranges else "rest"  # between them more may remain
     return "" if name == words else f" at {words}"

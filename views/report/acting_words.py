@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from quietarm.ocp import Front, Plan, PointToPoint
+from quietarm.ocp import Front, Plan
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.views.tips import tip_words
-
-if TYPE_CHECKING:
-    from quietarm.machine.recordings.recorded_path import RecordedPath
 
 
 def acting_words(motion: JudgedMotion) -> str:
@@ -45,23 +41,24 @@ def ranges_words(ranges: Mapping[str, float]) -> str:
     return f"for errors of {' and of '.join(parts)}"
 
 
-def path_lines(task: PointToPoint, path: RecordedPath) -> list[str]:
+def path_lines(motion: JudgedMotion) -> list[str]:
     """The first line of the answer of a recorded path with a band; none without one."""
-    if task.band is None:
-        return []
-    return [acting_words(JudgedMotion.of_free_motion(task, path.motion))]
+    return [] if motion.task.band is None else [acting_words(motion)]
 
 
 def band_lines_of_front(front: Front) -> list[str]:
-    """The first line of a front whose task has a band: of its cheapest motion that keeps it."""
+    """The first line of a front whose task has a band: of its motion that acts first.
+
+    Of several the cheapest.
+    """
     limit = front.task.band_limit
     if limit is None:
         return []
-    within = [point for point in front.points if point.residual <= limit]
-    if not within:
+    if all(point.residual > limit for point in front.points):
         return [f"no motion leaves less than {tip_words(limit, 'm')}, the band over its margin"]
-    point = min(within, key=lambda point: point.energy)
-    return [f"{acting_words(front.judged(point))}, by {point.energy:.4g} J"]
+    motions = [front.judged(point) for point in front.points]
+    first = min(motions, key=lambda motion: (motion.acts_after, motion.energy))
+    return [f"{acting_words(first)}, by {first.energy:.4g} J"]
 
 
 def band_lines(plan: Plan) -> list[str]:

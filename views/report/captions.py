@@ -13,8 +13,9 @@ from quietarm.ocp import Floor, Front, FrontPoint, JudgedMotion, Plan, Polish
 from quietarm.ocp.joint_words import further_words, spans_in_words
 from quietarm.ocp.limits import CAPTION
 from quietarm.ocp.rest import is_at_rest
+from quietarm.ocp.robustness import worst_of
 from quietarm.ocp.task import PointToPoint
-from quietarm.views.report.words import error_words, residual_words
+from quietarm.views.report.words import error_words, scenarios_words
 from quietarm.views.tips import tip_words
 
 if TYPE_CHECKING:
@@ -124,7 +125,8 @@ def caption_of_front(front: Front) -> str:
         return "No point of this front was found"
     stillest = front.points[0]
     cheapest = front.points[-1]
-    still = residual_words(stillest.residual, front.task)
+    worst = worst_of(front.judged(stillest))
+    still = scenarios_words(stillest.residual, worst, front.task)
     still = "at rest" if still == "rest" else still
     words = f"{stillest.energy:.3g} J {still}{_further(front, stillest)}"
     if len(front.points) == 1:

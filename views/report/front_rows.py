@@ -22,6 +22,7 @@ from quietarm.views.report.words import (
     energy_words,
     residual_place,
     residual_words,
+    scenarios_words,
     spread_words,
     values_words,
 )
@@ -43,6 +44,7 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
         ),
         _residual_line(front.task)
         + "; between them more may remain, as quietarm plan says" * bool(front.task.ranges),
+        *_band_lines(front.task),
         *([] if check is None else [_check_line(check)]),
         *_grid_lines(front),
         *failure_lines(front, asked_for),
@@ -76,7 +78,7 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str
             *_chosen_points(front),
             *_noise_lines(front),
         ]
-    lines.append(_residual_line(fronts[0].task))
+    lines += [_residual_line(fronts[0].task), *_band_lines(fronts[0].task)]
     if len(fronts) > 1:
         energies = energies_at(fronts)
         level = tip_words(SEARCH_RESIDUAL, tip_unit)
@@ -137,6 +139,17 @@ def _residual_line(task: PointToPoint) -> str:
     return f"residuals are {residual_place(task)}"
 
 
+def _band_lines(task: PointToPoint) -> list[str]:
+    """What of a band for errors a front does not keep, and what does; nothing without one."""
+    if task.band is None or not task.ranges:
+        return []
+    return [
+        "the points of a front keep their residuals in the scenarios alone, at the ends of the "
+        "range of errors; quietarm front --objectives time,energy, or quietarm plan --band, keeps "
+        "the band in all of it"
+    ]
+
+
 def _chosen_points(front: Front) -> list[str]:
     """The ends and the knee, a line each."""
     if not front.points:
@@ -195,14 +208,15 @@ def _noise_lines(front: Front) -> list[str]:
 def _point_in_words(front: Front, point: FrontPoint) -> str:
     """Energy and residual; of an uncertain plant also the worst case."""
     tip_unit = front.task.plant.tip_unit
-    words = f"{point.energy:.4g} J at {residual_words(point.residual, front.task)}"
+    motion = front.judged(point)
+    worst = worst_of(motion)
+    words = f"{point.energy:.4g} J at {scenarios_words(point.residual, worst, front.task)}"
     words += "".join(
         f", {QUANTITIES[objective.quantity].words.of(front.task.plant.joint)} "
         f"{tip_words(point.peaks[objective.quantity], objective.unit)}"
         for objective in _peaks_of(front)
     )
-    words += "".join(f", {text}" for text in further_words(front.judged(point), FRONT))
-    worst = worst_of(front.judged(point))
+    words += "".join(f", {text}" for text in further_words(motion, FRONT))
     return words if worst is None else f"{words}; worst case {worst_in_words(worst, tip_unit)}"
 
 

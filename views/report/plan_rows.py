@@ -128,10 +128,10 @@ def _size(plan: Plan | None) -> int:
     return CycloidPolynomial().terms if plan is None else plan.profile.size
 
 
-def path_rows(task: PointToPoint, path: RecordedPath) -> list[Row]:
-    """A recorded path's figures by CVODES; of an uncertain plant also at the corners."""
+def path_rows(candidate: JudgedMotion, path: RecordedPath) -> list[Row]:
+    """The figures of a motion along a recorded path; of an uncertain plant also at the corners."""
+    task = candidate.task
     free = path.motion
-    candidate = JudgedMotion.of_free_motion(task.certain, free)
     ends = (f"{1e3 * gap:.3g}" for gap in (free.lengths.min(), free.lengths.max()))
     jump = np.abs(np.diff(free.acceleration)).max(initial=0.0)
     unit = ACCELERATION.of(task.plant.joint)

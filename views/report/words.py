@@ -12,11 +12,12 @@ from quietarm.ocp import ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective
-from quietarm.ocp.rest import is_at_rest
+from quietarm.ocp.rest import is_at_rest, rest_of
 from quietarm.views.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
     from quietarm.metaheuristics.spread import Spread
+    from quietarm.ocp.judged_motion import JudgedMotion
 
 
 def counted(number: int, what: str) -> str:
@@ -56,6 +57,14 @@ def span_words(begin: float, end: float) -> str:
 def residual_words(residual: float, task: PointToPoint) -> str:
     """A residual in the unit that is shown; `rest` where it counts as that."""
     return "rest" if is_at_rest(residual, task) else tip_words(residual, task.plant.tip_unit)
+
+
+def scenarios_words(residual: float, worst: JudgedMotion | None, task: PointToPoint) -> str:
+    """The residual of a front's point, at rest only where its worst case is; None has none."""
+    words = residual_words(residual, task)
+    if words != "rest" or worst is None or is_at_rest(worst.residual, task):
+        return words
+    return f"{tip_words(rest_of(task), task.plant.tip_unit)} or less in the scenarios"
 
 
 def window_words(window: float) -> str:

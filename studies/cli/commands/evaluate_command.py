@@ -9,6 +9,7 @@ import click
 from quietarm.machine.tables.table import TABLES
 from quietarm.models import Robot, RobotOnPath
 from quietarm.ocp import evaluate_coefficients
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.as_timed import WINDOW, evaluate_as_timed
 from quietarm.ocp.planning.named_profiles import families
 from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
@@ -122,9 +123,11 @@ def _evaluate_path(given: Given) -> None:
     given.refuse_others({"path", *(param.name for param in TASK)}, "is not for a --path")
     recorded = read_path(given.path, given.read_plant(given.plant).joint)
     task = given.read_task(start=recorded.start, target=recorded.target, duration=recorded.duration)
+    motion = JudgedMotion.of_free_motion(task, recorded.motion)
     with busy("integrating"):
-        rows = path_rows(task, recorded)
-    finish([], *path_lines(task, recorded), rows, *recorded.notes, *given.remarks)
+        first = path_lines(motion)
+        rows = path_rows(motion, recorded)
+    finish([], *first, rows, *recorded.notes, *given.remarks)
 
 
 def _evaluate_as_timed(given: Given) -> None:

@@ -2,12 +2,14 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 import quietarm as qa
 from quietarm.ocp import FIGURES, TimeFront
+from quietarm.ocp.robustness import worst_of
 
 PAPER = "single-link --target 30deg --duration 0.8 --coefficients=0.003347,-0.1697"
 """The paper's two terms, which leave 0.05 mm of the nominal plant."""
@@ -31,6 +33,18 @@ def test_without_an_error_the_range_is_five_percent_and_is_said(done):
     out = done(f"evaluate {PAPER} --band 1mm --output plan.json")
     assert "the band is for frequency errors up to 5 %, as no --error is given" in out
     assert qa.Plan.load("plan.json").task.ranges == {"frequency": 0.05}
+
+
+def test_every_row_of_a_path_is_of_the_worst_of_its_scenarios(done, folder):
+    rows = [f"{k / 10},{x}" for k, x in enumerate([0, 1, 3, 6, 8, 9, 9.5])]
+    (folder / "path.csv").write_text("\n".join(["time_s,position_mm", *rows]))
+    out = done("evaluate linear-axis --path path.csv --band 0.5mm --error frequency=20%")
+    first = re.search(r"may act after ([0-9.]+) s: within 0.5 mm", out)[1]
+    assert float(re.search(r"acts after +([0-9.]+) s", out)[1]) == pytest.approx(float(first), 5e-3)
+    worst = re.search(r"residual \(F1\) +([0-9.]+) mm at the tip, worst of 3 scenarios", out)[1]
+    at_ends = re.findall(r"residual +([0-9.]+) mm with frequency [-+]20 %", out)
+    assert len(set(at_ends)) == 2
+    assert worst == max(at_ends, key=float)
 
 
 @pytest.mark.slow
@@ -93,6 +107,38 @@ def test_a_plan_without_an_error_says_what_it_leaves_where_the_frequency_is_off(
     assert "if the frequency" not in done(
         "plan single-link --target 30deg --duration 0.8 --terms 6 --error frequency=1%"
     )
+
+
+@pytest.mark.slow
+def test_a_front_begins_with_its_motion_that_acts_first(done):
+    """Its still end keeps rest at -5, 0 and 5 % alone, and says so."""
+    line = "front linear-axis --target 0.3 --duration 0.6 --terms 8 --points 3 --starts 1"
+    out = done(f"{line} --band 0.01mm --output front.json --quiet")
+    front = qa.Front.load("front.json")
+    motions = [front.judged(point) for point in front.points]
+    first = min(motions, key=lambda motion: motion.acts_after)
+    assert out.startswith(f"may act after {first.acts_after:.3g} s: within 0.01 mm")
+    assert f", by {first.energy:.4g} J\n" in out
+    cheapest = front.cheapest(front.task.band_limit)
+    cheaper = motions[front.points.index(cheapest)]
+    assert cheaper.acts_after > first.acts_after
+    assert cheaper.energy < first.energy
+    assert motions[0].residual < 1e-6 < worst_of(motions[0]).residual
+    (end,) = [line for line in out.splitlines() if "least residual" in line]
+    assert "J at 0.001 mm or less in the scenarios, acts after" in end
+    assert "worst case 0.00" in end
+    assert "at rest" not in out
+    assert "keep their residuals in the scenarios alone" in out
+    assert "--objectives time,energy, or quietarm plan --band" in out
+
+
+def test_what_is_not_feasible_names_the_band_that_was_typed(refused):
+    line = "plan linear-axis --target 0.3 --duration 0.3 --terms 2 --starts 1 --quiet"
+    said = refused(f"{line} --acceleration-limit 20 --band 0.1mm", status=1)
+    assert "with residual <= 0.03333 mm (a band of 0.1 mm with a margin of 3), accel" in said
+    assert re.search(r"unchanged: band [0-9.]+ mm", said)
+    wider = float(re.search(r"band ([0-9.]+) mm;", said)[1])
+    assert 1 < wider < 300
 
 
 @pytest.mark.slow
