@@ -59,14 +59,14 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> Combined:
     rough = dict[str, float]()
     trends = dict[str, Trend]()
     for name in names:
-        groups = _groups_of(parts, name)
+        groups = groups_of(parts, name)
         ranges = [part.spread[name] for part in parts if name in part.spread]
-        estimated = _covering(estimate(name, groups), ranges, ranges)
+        estimated = covering(estimate(name, groups), ranges, ranges)
         trend = _trend_among(groups)
         if trend:
             trends[name] = trend
             of_next = (trend.next_low, trend.next_high)
-            estimated = _covering(estimated, [(trend.low, trend.high)], [of_next])
+            estimated = covering(estimated, [(trend.low, trend.high)], [of_next])
         if estimated.value == 0 or estimated.error >= 1:
             low, high = estimated.widest
             wide[name] = f"its interval, {low:.3g} to {high:.3g}, is as wide as its value"
@@ -86,7 +86,7 @@ def _agree(parts: Sequence[Part], name: str, value: float) -> bool:
     return value > 0 and float(values.min()) > 0 and widest <= apart * value
 
 
-def _groups_of(parts: Sequence[Part], name: str) -> list[Group]:
+def groups_of(parts: Sequence[Part], name: str) -> list[Group]:
     """What the parts of each recording say of a parameter, recordings in the order of the parts."""
     recordings = dict.fromkeys(part.recording for part in parts)
     groups = list[Group]()
@@ -99,21 +99,33 @@ def _groups_of(parts: Sequence[Part], name: str) -> list[Group]:
     return groups
 
 
-def estimate(name: str, groups: Sequence[Group]) -> Estimate:
-    """Mean and intervals of one parameter, of parts by their recordings."""
+def estimate(name: str, groups: Sequence[Group], sizes: Array | None = None) -> Estimate:
+    """Mean and intervals of one parameter, of parts by their recordings.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter.
+    groups : sequence of Group
+        What each recording says of it.
+    sizes : array, shape (groups,), optional
+        How many times as much as the best one each recording may be off by what is random from one
+        to the next; 1 of all by default. The next swing is that of a best one.
+    """
     from scipy.special import stdtrit  # not at the top: it takes long to load
 
     level = 0.95
     freedom_of_fit = 30.0  # degrees of freedom of the variance that a part's fit has
     within = _between(groups)
     means = _means_of(groups, within)
-    among = _between([means])
-    mean, of_mean = _mean(means.values, means.variances + among)
-
     files = len(groups)
+    squares = np.ones(files) if sizes is None else sizes**2
+    among = _between([means], squares)
+    mean, of_mean = _mean(means.values, means.variances + among * squares)
+
     count = sum(len(group.values) for group in groups)
     of_machine = np.array([among, within, 0.0])
-    of_parts = of_machine / [files, count, 1.0]
+    of_parts = of_machine / [(1 / squares).sum(), count, 1.0]
     of_parts[2] = max(of_mean - of_parts.sum(), of_mean / 1e6)  # that of the fits
     freedom = np.array([max(files - 1, 1), max(count - files, 1), freedom_of_fit * count])
 
@@ -127,7 +139,7 @@ def estimate(name: str, groups: Sequence[Group]) -> Estimate:
     return Estimate(name, mean, *ends(of_parts), *next_swing)
 
 
-def _covering(estimated: Estimate, of_mean: Sequence[Span], of_next: Sequence[Span]) -> Estimate:
+def covering(estimated: Estimate, of_mean: Sequence[Span], of_next: Sequence[Span]) -> Estimate:
     """An estimate whose intervals, of the mean and of the next swing, hold these as well."""
     ends = (estimated.low, estimated.high)
     low, high = _hull([ends, *of_mean])
@@ -163,15 +175,19 @@ def _mean(values: Array, variances: Array) -> tuple[float, float]:
     return float((weight * values).sum() / weight.sum()), 1 / float(weight.sum())
 
 
-def _between(groups: Sequence[Group]) -> float:
-    """Variance within groups beyond their own: with it weighed squares are as many as free."""
+def _between(groups: Sequence[Group], sizes: Array | float = 1.0) -> float:
+    """Variance within groups beyond their own: with it weighed squares are as many as free.
+
+    It is that of a value of size 1; others have as many times as much.
+    """
     from scipy.optimize import brentq  # not at the top: it takes long to load
 
     def excess(between: float) -> float:
         total = 0.0
         for values, variances in groups:
-            mean, _ = _mean(values, variances + between)
-            squares = (values - mean) ** 2 / (variances + between)
+            total_variances = variances + between * sizes
+            mean, _ = _mean(values, total_variances)
+            squares = (values - mean) ** 2 / total_variances
             total += float(squares.sum()) - (len(values) - 1)
         return total
 

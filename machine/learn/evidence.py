@@ -9,17 +9,17 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.identify.combine import combine
 from quietarm.machine.identify.identified import Estimate, Identified, Part, is_frequency
 from quietarm.machine.learn.arrival_map import ArrivalMap, faster_by, map_of
 from quietarm.machine.learn.find_start import tip_share
 from quietarm.machine.learn.read_force import swing_by_joint
 from quietarm.machine.learn.read_swing import AfterMove, modal_names
 from quietarm.machine.learn.tip_modes import TipModes
+from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.machine.recordings.recording import Recording
 from quietarm.models import Plant
 from quietarm.ocp.judged_motion import JudgedMotion
-from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory
+from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory, RecordedArrival
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.record import versions
 
@@ -83,6 +83,11 @@ def _history_with(plan: Plan, read: Sequence[AfterMove]) -> MoveHistory:
     return replace(history, moves=(*history.moves, now))
 
 
+def _name_of(number: int, measured: RecordedArrival) -> str:
+    """The name of a recording of a move of the history."""
+    return f"move {number}, {measured.recording}"
+
+
 def _same_motion(first: ExecutedMove, second: ExecutedMove) -> bool:
     return (first.profile, first.coefficients, first.move) == (
         second.profile, second.coefficients, second.move,
@@ -126,7 +131,7 @@ class Evidence:
                 if not one.values:
                     continue
                 known = read.get(one.recording) if is_last else None
-                name = f"move {number}, {one.recording}"
+                name = _name_of(number, one)
                 values, deviations = dict(one.values), dict(one.deviations)
                 part = known or Part(one.recording, 0.0, 0.0, values, deviations)
                 parts.append(replace(part, recording=name))
@@ -138,8 +143,21 @@ class Evidence:
         estimates = list[Estimate]()
         for name in modal_names(self._plan.task.plant):
             telling = [part for part in self._parts if name in part.values]
-            estimates += combine([name], telling).estimates if telling else []
+            estimated = weigh_moves(name, telling, self._swung) if telling else None
+            estimates += [estimated] if estimated else []
         return tuple(estimates)
+
+    @cached_property
+    def _swung(self) -> dict[str, float]:
+        """How far the tip swung after each recording's move [m], by its part's recording.
+
+        The same of all where the frequency follows from a torque, during the move.
+        """
+        return {
+            _name_of(number, one): 1.0 if self.by_joint else sum(s.amplitude for s in one.swings)
+            for number, move in enumerate(self.history.moves, start=1)
+            for one in move.measured
+        }
 
     @cached_property
     def changed(self) -> dict[str, tuple[float, float]]:

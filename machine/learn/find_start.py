@@ -27,6 +27,10 @@ _BEFORE = 0.1
 """Share of the duration that is compared before the start, where the joint rests."""
 _LEAST_MET = {"angle": 0.99, "torque": 0.7, "tip": 0.7, "acceleration": 0.5}
 """Share of a signal's power during the move that the plan explains, or it is another move."""
+_MOST_UNEXPLAINED = {"angle": 1e-4}
+"""Share of a signal's power that the plan leaves unexplained by the right clock; a joint follows
+the plan closely."""
+_PER_CENT = 1e-2
 _SAME_WAY = 0.03
 """Share by which the recorded way of a joint may differ from the plan's."""
 
@@ -71,7 +75,8 @@ def find_start(plan: Plan, recording: Recording) -> Start:
     values = recording.measured[signal].reshape(len(recording.time), -1)[:, 0]
     search, lag, explained = _best_search(plan, recording.time, values, signal)
     if explained < _LEAST_MET[signal]:
-        search.refuse_other_clock(recording.name, explained)
+        most = _MOST_UNEXPLAINED.get(signal, 0.02)
+        search.refuse_other_clock(recording.name, explained, most)
         raise ValueError(
             f"{recording.name}: it is of another move: of its {_WORDS[signal]} the plan explains "
             f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
@@ -81,7 +86,7 @@ def find_start(plan: Plan, recording: Recording) -> Start:
     # a joint follows the plan closely, and a tip swings beside it
     search.refuse_stretched(recording.name, lag, explained, 1e-6 if signal == "angle" else 1e-4)
     if signal == "angle":
-        _check_way(plan, recording.name, float(search.sizes(lag)[0]))
+        _check_way(plan, recording, lag, float(search.sizes(lag)[0]))
     return Start(lag, signal, explained)
 
 
@@ -134,6 +139,24 @@ def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
         f"warning: {recording.name}: the joint is {words} (rms) off the plan's path: is it the "
         "recording of this plan?"
     )
+
+
+def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
+    """ValueError where a tip follows the joint's path far better than what was given as the joint.
+
+    A tip swings beside the path, and a joint does not.
+    """
+    far_better = 0.1  # times what the joint leaves unexplained
+    if start.signal != "angle" or recording.tip is None:
+        return
+    values = recording.tip.reshape(len(recording.time), -1)[:, 0]
+    search = _Search(recording.time, values, _courses(plan.candidate, "angle"), plan.task.duration)
+    _, explained = search.refined(start.time)
+    if 1 - explained < far_better * (1 - start.explained):
+        raise ValueError(
+            f"{recording.name}: its tip follows the path of the plan's joint, and its joint swings "
+            "beside it; were --tip and --angle exchanged?"
+        )
 
 
 def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
@@ -259,33 +282,55 @@ class _Search:
 
         A move is met where no more than a share is unexplained.
         """
-        step = float(self._at[1] - self._at[0])
-        per_cent = 1e-2
         not_met = 10 * met
         if 1 - explained < not_met:
             return
-        found: Any = _least(lambda x: self._unexplained(lag + step * x[0], 1 + per_cent * x[1]), 2)
-        stretch = 1 + per_cent * float(found.x[1])
-        if abs(stretch - 1) > per_cent and found.fun < met:
+        begin, stretch, unexplained = self._with_clock(lag, 1.0)
+        off = abs(stretch - 1) > _PER_CENT and unexplained < met
+        if off and self._holds_all(begin, stretch):
             raise ValueError(_other_clock(name, stretch, self._duration))
 
     def _unexplained(self, lag: float, stretch: float) -> float:
         return 1 - float(self._explained(self._window(lag, stretch)[None])[0])
+
+    def _with_clock(self, lag: float, stretch: float) -> tuple[float, float, float]:
+        """The place [s], the clock's stretch near one, and the share left unexplained there."""
+        step = stretch * float(self._at[1] - self._at[0])
+
+        def unexplained(x: Array) -> float:
+            return self._unexplained(lag + step * x[0], stretch * (1 + _PER_CENT * x[1]))
+
+        found: Any = _least(unexplained, 2)
+        place, clock = found.x
+        return lag + step * float(place), stretch * (1 + _PER_CENT * float(clock)), float(found.fun)
+
+    def _holds_all(self, begin: float, stretch: float) -> bool:
+        """Whether the move, by a clock, is all the way that the recording goes, and no piece."""
+        if not 0.2 <= stretch <= 5:
+            return False
+        nearly = 0.9  # share of the way; a swing after the move goes beyond it
+        return float(np.ptp(self._window(begin, stretch))) > nearly * float(np.ptp(self._values))
 
     def sizes(self, lag: float) -> Array:
         """The size of each course at a place, over what the plan says."""
         window = self._window(lag, 1.0)
         return self._sizes((window - window.mean()) @ self._courses)
 
-    def refuse_other_clock(self, name: str, explained: float) -> None:
-        """ValueError where the move is met by a clock that runs faster or slower."""
+    def refuse_other_clock(self, name: str, explained: float, most: float) -> None:
+        """ValueError where the move is met by a clock that runs faster or slower.
+
+        A move is met where no more than a share is unexplained.
+        """
         far_better = 0.1
         longest = float(np.ptp(self._time)) / self._duration
         stretches = [s for s in np.geomspace(0.2, 5, 65) if s < longest]
-        found = [(self.best(s)[1], s) for s in stretches]
-        best, stretch = max(found, default=(0.0, 1.0))
-        if 1 - best < far_better * (1 - explained):
-            raise ValueError(_other_clock(name, float(stretch), self._duration))
+        found = [(*self.best(s), s) for s in stretches]
+        begin, best, stretch = max(found, key=lambda each: each[1], default=(0.0, 0.0, 1.0))
+        if 1 - best >= far_better * (1 - explained):
+            return
+        begin, stretch, unexplained = self._with_clock(begin, float(stretch))
+        if unexplained < most and self._holds_all(begin, stretch):
+            raise ValueError(_other_clock(name, stretch, self._duration))
 
 
 def _least(function: Callable[[Array], float], unknowns: int) -> Any:
@@ -308,19 +353,36 @@ def _averaged(time: Array, values: Array, step: float) -> Array:
 def _other_clock(name: str, stretch: float, duration: float) -> str:
     return (
         f"{name}: its clock is off: the move takes {stretch * duration:.4g} s there, and "
-        f"{duration:.4g} s in the plan; give the samples per second by --rate, or the time's unit "
-        "by --units"
+        f"{duration:.4g} s in the plan; give the samples per second by --rate, the time's unit by "
+        "--units, or the recording of this plan's move"
     )
 
 
-def _check_way(plan: Plan, name: str, share: float) -> None:
-    """Refuse a joint that moved another way than the plan's."""
+def _check_way(plan: Plan, recording: Recording, lag: float, share: float) -> None:
+    """Refuse a joint that moved another way than the plan's, or as far by another path."""
     if abs(share - 1) <= _SAME_WAY:
         return
     linear = plan.task.plant.joint == LINEAR
     size, unit = (1e3, "mm") if linear else (180 / np.pi, "deg")
+    went = size * _way(recording, lag, plan.task.duration)
     span = size * plan.task.span
+    if abs(went / span - 1) <= _SAME_WAY:
+        raise ValueError(
+            f"{recording.name}: it is of another move: its joint goes {went:.4g} {unit}, as "
+            "the plan's does, by another path; give the recording of this plan's move"
+        )
     raise ValueError(
-        f"{name}: it is of another move: its joint goes {share * span:.4g} {unit}, and that of the "
-        f"plan {span:.4g}; give the recording of this plan's move, or its unit by --units"
+        f"{recording.name}: it is of another move: its joint goes {went:.4g} {unit}, and that of "
+        f"the plan {span:.4g}; give the recording of this plan's move, or its unit by --units"
     )
+
+
+def _way(recording: Recording, begin: float, duration: float) -> float:
+    """How far a joint goes in a recording, from before a move to after it."""
+    assert recording.angle is not None
+    time, angle = recording.time, recording.angle
+    margin = _BEFORE * duration
+    before, after = angle[time <= begin - margin], angle[time >= begin + duration + margin]
+    first = np.median(before) if len(before) else angle[0]
+    last = np.median(after) if len(after) else angle[-1]
+    return float(last - first)

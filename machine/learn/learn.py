@@ -12,8 +12,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
+from quietarm.machine.learn.check_columns import check_columns
 from quietarm.machine.learn.evidence import ReadMove, evidence_of, is_by_joint
-from quietarm.machine.learn.find_start import find_start, off_the_path
+from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
@@ -135,6 +136,9 @@ def _read(plan: Plan, recording: Recording) -> ReadMove:
     start = found.time
     arrival = start + task.duration
     check_length(recording, arrival, task.plant, task.target)
+    check_columns(plan, recording, arrival)
+    if doubt:
+        refuse_exchanged(plan, recording, found)
     if not is_by_joint(recording):
         after = read_swing(recording, arrival, task.plant, task.target)
         return ReadMove(recording, start, arrival, after, doubt)

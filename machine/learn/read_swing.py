@@ -24,14 +24,14 @@ from quietarm.ocp.planning.executed import ArrivalSwing, RecordedArrival
 from quietarm.ocp.uncertainty import with_values
 
 Array = NDArray[np.float64]
-_SETTLES = 0.25
+SETTLES = 0.25
 """Periods after arrival that are not read: the servo has not settled, and further modes die out."""
 _FIRST_PERIODS = 6.0
 """Periods by which amplitude and phase at arrival are fitted: later ones may have another
 frequency, where that depends on the amplitude."""
 _STANDS_OUT = 5.0
 """Deviations of the noise, from which on a swing tells its frequency."""
-_FAR = 0.5
+FAR = 0.5
 """Share by which a machine's frequency may be off the plan's."""
 
 
@@ -68,7 +68,7 @@ def check_length(recording: Recording, arrival: float, plant: Plant, place: floa
     frequencies = TipModes(plant, place).frequencies
     slowest, fastest = float(frequencies[0]), float(frequencies[-1])
     periods = (float(recording.time[-1]) - arrival) * slowest
-    least = LEAST_PERIODS + _SETTLES
+    least = LEAST_PERIODS + SETTLES
     if periods < least - 0.1:
         needed = arrival + least / slowest
         raise ValueError(
@@ -108,7 +108,7 @@ def read_swing(
         When most samples are at the sensor's limit.
     """
     slowest = float(TipModes(plant, place).frequencies[0])
-    begin = arrival + _SETTLES / slowest
+    begin = arrival + SETTLES / slowest
     rows = recording.rows(begin, float(recording.time[-1]))
     after = Recording(
         recording.time[rows],
@@ -198,8 +198,8 @@ def _fitted(fitter: PartFitter, rows: slice) -> tuple[Part, Array]:
 def starts_near(fitter: PartFitter, model: SwingModel) -> list[Array]:
     """The plant's parameters with other frequencies, of which a fit begins from the best."""
     seconds = float(np.ptp(model.time))
-    count = int(np.clip(8 * _FAR * fitter.frequency * seconds, 30, 400))
-    factors = np.linspace(1 - _FAR, 1 + _FAR, count)
+    count = int(np.clip(8 * FAR * fitter.frequency * seconds, 30, 400))
+    factors = np.linspace(1 - FAR, 1 + FAR, count)
     return [np.where(fitter.are_rates, f * fitter.of_plant, fitter.of_plant) for f in factors]
 
 

@@ -88,8 +88,8 @@ class Recording:
             object.__setattr__(self, name, values)
         if self.angle is not None and (largest := np.abs(self.angle).max()) > MOST_ANGLE:
             self._refuse(
-                f": an angle of {largest:g} rad; is it in degrees? say so by its unit, or rename a "
-                "column whose name says rad"
+                f": its joint is at {largest:g} rad, or m where it slides; is it in degrees, or in "
+                "mm? give rad or m, or a file's unit, such as --units angle:deg or angle:mm"
             )
 
     def _refuse_wrong_options(self) -> None:

@@ -17,7 +17,7 @@ def learning_sentence(learned: Learning) -> str:
     """What was left, what of it changes, what the next move leaves, and what none takes away."""
     plant = learned.plan.task.plant
     left = _with_unit(learned.left, plant)
-    floor = _number(learned.floor, plant)
+    floor = _with_unit(learned.floor, plant)
     whose = (
         "by friction, noise and what a torque does not tell"
         if learned.by_joint
@@ -31,8 +31,8 @@ def learning_sentence(learned: Learning) -> str:
     changed = _changed(learned)
     if changed:
         share = (
-            f", of which {_number(learned.by_frequency, plant)} by {changed} and "
-            f"{_number(learned.repeatable, plant)} repeatable"
+            f" (by the frequency {_with_unit(learned.by_frequency, plant)}: {changed}; repeatable "
+            f"{_with_unit(learned.repeatable, plant)})"
         )
     return (
         f"left {left}{share}; next move: at most {_with_unit(learned.next_at_most, plant)}; "
@@ -52,14 +52,15 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
             for name, time in learned.start.items()
         ),
     ]
+    when = "during the moves" if learned.by_joint else "after the moves"
     for estimate in learned.estimates:
         size, unit = (2 * pi, " Hz") if is_frequency(plant, estimate.parameter) else (1.0, "")
         low, high = estimate.low / size, estimate.high / size
         rows.append(
             (
                 estimate.parameter,
-                f"{estimate.value / size:.5g}{unit} after the moves, within {low:.5g} to "
-                f"{high:.5g}{unit} (95 %)",
+                f"{estimate.value / size:.5g}{unit} {when}, within {low:.5g} to {high:.5g}{unit} "
+                "(95 %)",
             )
         )
     if learned.scatter is not None:
@@ -75,11 +76,11 @@ def _changed(learned: Learning) -> str:
     """The frequencies that are changed, in words; empty where none is."""
     plant = learned.plan.task.plant
     words = [
-        f"{new / (2 * pi):.4g} Hz, model {model / (2 * pi):.4g}"
+        f"{new / (2 * pi):.4g} Hz during the move, model {model / (2 * pi):.4g} Hz"
         for name, (model, new) in learned.changed.items()
         if is_frequency(plant, name)
     ]
-    return f"the frequency ({'; '.join(words)})" if words else ""
+    return "; ".join(words)
 
 
 def _number(length: float, plant: Plant) -> str:

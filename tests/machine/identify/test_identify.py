@@ -336,7 +336,10 @@ RING = np.cos(20 * T)
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (partial(qa.Recording, T, 300 * T, RING), "an angle of 600 rad; is it in degrees"),
+        (
+            partial(qa.Recording, T, 300 * T, RING),
+            r"at 600 rad, or m where it slides; is it in degrees, or in mm\?",
+        ),
         (partial(qa.Recording, T[::-1], tip=RING), "the rows stand in reverse order"),
         (partial(qa.Recording, T, tip=np.where(T > 0.05, np.nan, RING)), "has 10 rows; give 20"),
         (partial(qa.Recording, T), "has no tip, acceleration or torque"),

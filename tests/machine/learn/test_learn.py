@@ -9,10 +9,12 @@ import pytest
 from scipy.signal import cont2discrete, lfilter
 
 import quietarm as qa
+from quietarm.machine.identify.identified import Part
 from quietarm.machine.learn.arrival_map import map_of
 from quietarm.machine.learn.find_start import find_start
 from quietarm.machine.learn.read_swing import read_swing
 from quietarm.machine.learn.tip_modes import TipModes
+from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.models import LinearAxis
 
 AXIS = LinearAxis(omega1=2 * np.pi * 5, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
@@ -148,6 +150,42 @@ def test_the_map_of_a_linear_machine_is_found_from_two_moves():
     assert found.share == pytest.approx(1.2 - 0.1j, abs=0.02)
     assert found.deviation == pytest.approx(2e-4 + 1e-4j, abs=1e-5)
     assert found.swing(found.told_for(0.0)) == pytest.approx(0.0, abs=1e-12)
+
+
+def told_by(*moves):
+    """The frequency by moves, each of a value, its deviation, and the swing after it."""
+    parts = [
+        Part(str(k), 0.0, 1.0, {"omega1": value}, {"omega1": deviation})
+        for k, (value, deviation, _) in enumerate(moves)
+    ]
+    return weigh_moves("omega1", parts, {str(k): swing for k, (_, _, swing) in enumerate(moves)})
+
+
+# a gantry's: 12.6 mm swing after the first move, and 0.15 mm after the next
+SHARP = (4.7068, 0.0016, 12.6e-3)
+
+
+@pytest.mark.parametrize("deviation", [2e-4, 1.6e-3, 0.02])
+@pytest.mark.parametrize("count", [1, 3])
+def test_small_swings_neither_move_nor_widen_what_a_large_one_told(deviation, count):
+    one = told_by(SHARP)
+    both = told_by(SHARP, *[(4.719 + 0.003 * k, deviation, 0.15e-3) for k in range(count)])
+    assert one.low < both.value < one.high
+    assert both.high - both.low < 1.5 * (one.high - one.low)
+
+
+def test_moves_of_like_swing_that_differ_are_averaged_and_unsure():
+    both = told_by(SHARP, (4.719, 0.0016, 12e-3))
+    assert both.value == pytest.approx(4.7129, abs=2e-3)  # the mean
+    assert both.low < 4.7068
+    assert both.high > 4.719
+    assert both.high - both.low < 5 * 0.0122  # of what they differ by
+
+
+def test_more_moves_that_agree_tell_more():
+    one, four = told_by(SHARP), told_by(*[SHARP] * 4)
+    assert four.value == pytest.approx(one.value)
+    assert four.high - four.low < 0.6 * (one.high - one.low)  # half, by the root of four
 
 
 # The next plan
@@ -288,6 +326,44 @@ def test_a_recording_that_tells_nothing_is_refused_in_a_line(change, words):
         qa.learn(plan, [run])
     assert str(refused.value).startswith("run: ")
     assert "; " in str(refused.value)  # a remedy
+
+
+def test_a_tip_in_place_of_the_joint_is_refused():
+    plan = a_plan()
+    signals = executed(plan, frequency=5.4)
+    swapped = qa.Recording(signals["time"], tip=signals["angle"], angle=signals["tip"], name="run")
+    words = (
+        r"run: its joint still swings by 4\.\d mm at 5\.\d+ Hz after arrival, and its tip by 0 mm"
+    )
+    with pytest.raises(ValueError, match=rf"{words}; were --tip and --angle exchanged\?$"):
+        qa.learn(plan, [swapped])
+
+
+def test_a_tip_that_swings_little_in_place_of_the_joint_is_refused_as_well():
+    plan = a_plan()
+    signals = executed(plan)  # by the model's own frequency, so that hardly a swing is left
+    swapped = qa.Recording(signals["time"], tip=signals["angle"], angle=signals["tip"], name="run")
+    with pytest.raises(ValueError, match=r"; were --tip and --angle exchanged\?$") as refused:
+        qa.learn(plan, [swapped])
+    assert "its tip follows the path of the plan's joint" in str(refused.value)
+
+
+def another_path(duration, *, power):
+    """A recording of a joint that goes the plan's way in some time by another path."""
+    time = np.arange(round(2.2 * RATE)) / RATE
+    since = np.clip((time - 0.1) / duration, 0.0, 1.0)
+    half = 0.5 * np.minimum(2 * since, 2 - 2 * since) ** power
+    way = 0.5 * np.where(since < 0.5, half, 1 - half)
+    noise = np.random.default_rng(0).normal(0, 1e-5, len(time))
+    return qa.Recording(time, angle=way, tip=way + noise, name="run")
+
+
+@pytest.mark.parametrize("power", [1, 5, 9])
+def test_another_path_of_the_same_way_is_said_to_be_one(power):
+    with pytest.raises(ValueError, match="it is of another move: ") as refused:
+        qa.learn(a_plan(), [another_path(0.7, power=power)])
+    assert "--units" not in str(refused.value)
+    assert "another path" in str(refused.value) or "the plan explains" in str(refused.value)
 
 
 def test_a_torque_alone_is_refused():

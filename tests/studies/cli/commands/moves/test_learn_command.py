@@ -49,9 +49,9 @@ def test_the_first_line_says_what_was_left_and_the_next_plan_leaves_less(done, f
     first = " ".join(out.split("learned from")[0].split())
     number = r"([\d.]+)"
     words = re.fullmatch(
-        rf"left {number} mm, of which {number} by the frequency \({number} Hz, model 5\) and "
-        rf"{number} repeatable; next move: at most {number} mm; floor by friction and noise "
-        rf"{number}",
+        rf"left {number} mm \(by the frequency {number} mm: {number} Hz during the move, model "
+        rf"5 Hz; repeatable {number} mm\); next move: at most {number} mm; floor by friction and "
+        rf"noise {number} mm",
         first,
     )
     left, by_frequency, hertz, repeatable, _, floor = map(float, words.groups())
@@ -91,7 +91,8 @@ def test_the_machine_is_a_plant_for_other_moves_and_keeps_what_it_knew(done, fol
 @pytest.mark.usefixtures("files")
 def test_axis_and_force_alone(done):
     out = done("learn plan.json run.csv --angle axis_mm --torque force_N")
-    assert "by the frequency (5.4 Hz, model 5)" in " ".join(out.split())
+    assert "5.4 Hz during the move, model 5 Hz" in " ".join(out.split())
+    assert re.search(r"omega1 +5\.4\d* Hz during the moves", out)
     assert "what a torque does not tell" in " ".join(out.split())
     assert "not used: column tool_mm" in out
 
@@ -109,6 +110,7 @@ def test_axis_and_force_alone(done):
         ("learn plan.json plan.json --tip tool_mm", "plan.json is given twice"),
         (f"{LINE} --dearer 250", "--dearer"),
         (f"{LINE} --tip none", "none"),
+        ("learn plan.json run.csv --tip axis_mm --angle tool_mm", "--tip and --angle exchanged?"),
         (f"{LINE} --units angle:cm", "its joint goes 5000 mm, and that of the plan 500"),
     ],
 )
