@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from quietarm.interrupts import interruptible
+from quietarm.ocp import Plan
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import unwritable, write_whole
 from quietarm.views.film_settings import FRAMES, WIDTHS
@@ -263,7 +264,8 @@ def _title(structure: Structure, same: bool, room: int) -> list[str]:
     """The lines above a panel."""
     plan = structure.line.plan
     task = structure.line.plan.task
-    residual = scenarios_words(plan.residual, plan.worst, task)
+    worst = plan.worst if isinstance(plan, Plan) else None  # a floor's task is certain
+    residual = scenarios_words(plan.residual, worst, task)
     residual = "at rest" if residual == "rest" else residual
     lines = [
         f"{structure.line.label}, {structure.scale_words}",
