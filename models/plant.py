@@ -420,7 +420,7 @@ class Plant(_Driven, ABC):
     @classmethod
     @final
     def parameter_fields(cls) -> tuple[Field[Any], ...]:
-        """The fields that are parameters: all but `content`."""
+        """Return the fields that are parameters: all but a drive and the like."""
         return tuple(entry for entry in fields(cls) if "content" not in entry.metadata)
 
     @property

@@ -545,7 +545,7 @@ class RobotOnPath(Plant):
                     else ""
                 )
                 raise ValueError(
-                    f"{name} is {multiple:.4g} times the robot's; its tables range_of_tables from "
+                    f"{name} is {multiple:.4g} times the robot's; its tables reach from "
                     f"{1 - FARTHEST:g} to {1 + FARTHEST:g} times{of_frequency}: give a smaller "
                     "error, or change the robot"
                 )

@@ -34,7 +34,7 @@ EXACTLY = 4 * math.pi / 0.6283
         f"front {CRANE} --terms 3 --points 3 --starts 1",
         f"front {CRANE} --terms 3 --points 3 --starts 1 --error frequency=10% --bound 5",
         f"search {CRANE} --terms 2 --bound 0.5 --generations 2 --population 8",
-        f"sweep {CRANE} --duration 16s,18s --terms 3 --output moves.zarr",
+        f"sweep {CRANE.replace('16', '16s,18s')} --terms 3 --output moves.zarr",
     ],
 )
 def test_commands_say_it(done, folder, line):

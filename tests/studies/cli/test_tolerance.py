@@ -15,6 +15,7 @@ EXPECTED = {
     "floor": FloorProgram.larger_tolerance * TOLERANCE,
 }
 COARSE = "single-link --duration 0.8 --terms 2"
+FASTEST = MOVE.replace("0.8", "fastest")
 
 
 @pytest.fixture
@@ -49,8 +50,8 @@ def seen(monkeypatch):
         (f"plan {MOVE} --terms 2 --starts 1 --torque-limit 0.1", 1, {"sqp"}),
         (f"plan {MOVE} --terms 2 --starts 1 --error frequency=5%", 0, {"sqp", "ipopt"}),
         (f"plan {MOVE} --profile free --starts 2", 0, {"sqp", "floor"}),
-        (f"plan {MOVE} --duration fastest --acceleration-limit 40", 0, {"sqp"}),
-        (f"plan {MOVE} --duration fastest --acceleration-limit 40 --terms 2", 0, {"sqp", "ipopt"}),
+        (f"plan {FASTEST} --acceleration-limit 40", 0, {"sqp"}),
+        (f"plan {FASTEST} --acceleration-limit 40 --terms 2", 0, {"sqp", "ipopt"}),
         (f"front {MOVE} --terms 2 --bound 0.3 --points 3 --check", 0, {"sqp", "ipopt"}),
         (f"front {MOVE} --terms 2 --bound 0.3 --points 3 --method weighted", 0, {"sqp"}),
         (f"front {MOVE} --terms 2 --bound 0.3 --points 3 --error frequency=5%", 0, {"sqp"}),

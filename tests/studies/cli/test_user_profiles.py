@@ -49,7 +49,7 @@ def test_a_profile_beside_a_plant_in_the_plant_file(done, call, refused, crane_f
     polish = "front --polish search.json --plant-file crane.py --quiet --output polished.json"
     assert call(polish)[0] == 0
     assert Front.load("polished.json").profile == Front.load("search.json").profile
-    told = refused(f"evaluate --plant-file crane.py {MOVE} --coefficients=1 --profile minimum-jrk")
+    told = refused(f"evaluate --plant-file crane.py {MOVE.replace('jerk', 'jrk')} --coefficients=1")
     assert "did you mean 'minimum-jerk'" in told
 
 

@@ -14,7 +14,15 @@ from matplotlib.text import Text
 from pages import DOCS, ROOT
 
 import quietarm as qa
-from quietarm.ocp import CycloidPolynomial, Mark, Polish, energy_floor, evaluate_robustness
+from quietarm.models import LinearAxis
+from quietarm.ocp import (
+    CycloidPolynomial,
+    Mark,
+    Polish,
+    energy_floor,
+    evaluate_robustness,
+    time_front,
+)
 from quietarm.ocp.front.polish import Gain
 from quietarm.studies.compare import compare_fronts, compare_plans
 from quietarm.views.film import _draw, animate
@@ -76,6 +84,9 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
     lines = [Line(motion, name) for name, motion in named.items()]
     judged = compare_plans(named, ["cycloid", "zv"], {"frequency": 0.1}, samples=20)
     by_band = compare_plans(named, ["zv"], task=replace(task, band=1e-3))
+    axis = LinearAxis(omega1=28.2, zeta1=0.007, mass=60.0, load=12.0)
+    limits = {"speed_limit": 1.5, "acceleration_limit": 7.0, "jerk_limit": 150.0}
+    by_time = time_front(axis.task(0.4, 1.0, band=1e-3, **limits), points=2)
     comparison = replace(compare_fronts([gradient, *seeds], fill=False), floor=0.1)
     errors = evaluate_robustness(plan.candidate, {"frequency": 0.1}, samples=1)
     floor = energy_floor(task, starts=1, energy_tolerance=0.5)
@@ -95,6 +106,7 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
         "comparison_figure": of.comparison_figure(comparison),
         "draw_comparison": of.draw_comparison(comparison, small=True).figure,
         "draw_gaps": of.draw_gaps(comparison).figure,
+        "time_front_figure": of.time_front_figure(by_time),
         "acting_figure": of.acting_figure(by_band, "a move"),
         "draw_acting": of.draw_acting(by_band).figure,
         "motions_figure": of.motions_figure(judged, "a move"),
