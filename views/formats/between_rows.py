@@ -33,6 +33,8 @@ _BETWEEN = {
     3: "quintics of {}, speed and acceleration",
 }
 """How it is interpolated, by how many of `OF_POINTS` there are."""
+THROUGH_DRIVE = "set points through the drive, whose load follows the planned path"
+"""What is said of rows that are not the planned path itself."""
 _TOLD = 1e-3
 """Share of the largest deflection on the way: so much more than the plan's residual is told."""
 
@@ -44,6 +46,8 @@ def note_of_rows(plan: Plan, columns: str, rate: float) -> str:
 
 def note_of_points(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
     """`interpolation_note`, and how far such a controller is from the plan between the points."""
+    if plan.candidate.inverts_drive:
+        return THROUGH_DRIVE
     derivatives = _derivatives_in(columns)
     times = times_of(plan, rate)
     if derivatives == 0 or len(times) > MOST_POINTS:

@@ -15,7 +15,7 @@ from quietarm.models.joint_motion import ROTARY
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import csv_table, one_line
 from quietarm.ocp.planning.move_table import times_of
-from quietarm.views.formats.between_rows import residual_through
+from quietarm.views.formats.between_rows import THROUGH_DRIVE, residual_through
 from quietarm.views.formats.deviation import (
     CUBIC,
     LINEAR,
@@ -157,7 +157,7 @@ class _Records:
         """What the drive's interpolation leaves, in words."""
         plan = self.plan
         if plan.candidate.inverts_drive:
-            return "set points through the drive, whose load follows the planned path"
+            return THROUGH_DRIVE
         points = [(self.positions - self.zero) / self.scales, self.speeds / self.scales]
         if len(self.times) > MOST_POINTS:
             return ""

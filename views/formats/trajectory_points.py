@@ -29,6 +29,11 @@ def times_of_points(plan: Plan, rate: float, thin: float | None) -> Array:
     times = times_of(plan, rate)
     if thin is None:
         return times
+    if plan.candidate.inverts_drive:
+        raise ValueError(
+            f"thin is {thin:g}, and the plan's set points go through its drive, at every tick; "
+            "leave it out"
+        )
     return times[fewest_points(times, *_moving(plan, times), thin)]
 
 

@@ -89,16 +89,7 @@ def compare(given: Given) -> None:
             given.refuse(["reference", "free", *_OF_FLOOR], "is for fronts")
             report = _of_plans(given, plans)
         else:
-            of_plans = [
-                "baselines",
-                "errors",
-                "band",
-                "band_margin",
-                "durations",
-                "energy",
-                "samples",
-            ]
-            given.refuse(of_plans, "is for plans")
+            given.refuse(_OF_PLANS, "is for plans")
             if not given.free:
                 given.refuse(_OF_FLOOR, "is for the free motion, which --no-free-motion leaves out")
             report = _of_fronts(given, fronts)

@@ -142,5 +142,7 @@ def test_a_plan_of_a_drive_has_its_set_points_through_the_drive(tmp_path):
     assert np.abs(rows[:, 1] / 1e6 - joint.angle).max() <= 0.5e-6  # whole increments
     assert np.abs(rows[:, 1] / 1e6 - plan.sampled(asked.time).sample.path.angle).max() > 1e-5
     assert "set points through the drive" in header[-1]
+    with pytest.raises(ValueError, match="plan's set points go through its drive"):
+        export_plan(plan, tmp_path / "move.yaml", thin=1e-3)
     export_plan(plan, tmp_path / "move.c")
     assert "the path of the load, without the drive" in (tmp_path / "move.h").read_text()
