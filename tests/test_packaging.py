@@ -132,6 +132,25 @@ def test_every_requirement_has_a_lower_bound_and_a_pin_that_meets_it():
             assert pinned[canonicalize_name(requirement.name)] in requirement.specifier
 
 
+def test_the_recipe_for_conda_asks_for_what_the_wheel_asks_for():
+    yaml = pytest.importorskip("yaml")
+    recipe = yaml.safe_load((ROOT / "conda" / "recipe.yaml").read_text())
+    asked = [Requirement(row.replace(" ", "")) for row in recipe["requirements"]["run"][1:]]
+    of_the_wheel = [Requirement(row) for row in PYPROJECT["project"]["dependencies"]]
+    renamed = {"matplotlib": "matplotlib-base"}  # without a toolkit of windows
+    assert {(row.name, str(row.specifier)) for row in asked} == {
+        (renamed.get(row.name, row.name), str(row.specifier)) for row in of_the_wheel
+    }
+
+
+@pytest.mark.parametrize(
+    "name",
+    [".github/workflows/publish.yml", ".github/workflows/site.yml", "conda/recipe.yaml"],
+)
+def test_a_file_that_was_never_run_says_so_in_its_first_line(name):
+    assert (ROOT / name).read_text().startswith("# Not run so far")
+
+
 # Put together here, so that this file is not the one that is found.
 MACHINE = ["/" + name + "/" for name in ("root", "home", "work", "Users", "tmp", "private")]
 MACHINE += ["C:" + "\\", "file:" + "//"]
