@@ -13,15 +13,21 @@ from typing import Any
 
 from quietarm.metaheuristics import Job
 
+from .limits import LIMITS
 from .moves import Move
 from .problems import CENTRE_TERMS, Case
 
-AXES = ("centre", "crossing", "energy", "paper", "noise", "objectives", "large", "tuned", "million")
+AXES = (
+    "centre", "crossing", "limits", "few", "energy", "paper", "noise", "objectives", "large",
+    "tuned", "million",
+)  # fmt: skip
 TERMS = (2, 4, 6, 10, 16, 24)
 BUDGETS = (1_000, 10_000)
+FEW = 200
+"""Candidates where each is a run on a machine, or an hour of a simulator."""
 LARGE, MILLION = 100_000, 1_000_000
 KINDS = ("copper", "stages", "motor-map", "integer")
-SEEDS = {1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
+SEEDS = {200: 15, 1_000: 15, 10_000: 15, 40_000: 7, 100_000: 7, 1_000_000: 3}
 """Rounds of the full plan, by budget."""
 LADDER = (3, 5, 10, 50, 200)
 """Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
@@ -35,6 +41,10 @@ CENTRAL = ("cmopso", "smsemoa", "moead", "nsga2+polish", "gde3+polish", "random"
 """Methods of candidates that are run at the centre beside these."""
 RANDOM_STARTS = (("continuation", False),)
 """Settings of `slsqp` by which each of its starts is random."""
+LIMITED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
+"""Methods that are run on moves with limits; small populations where candidates are few."""
+AT_FEW = ("nsga2", "gde3", "moead-de")
+"""Searches of 20 individuals that are run with 200 candidates."""
 AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic", "slsqp")
 OF_KINDS = ("nsga2", "gde3", "moead-de", "memetic", "slsqp")
 PEAKS = ("peak_torque", "peak_deflection")
@@ -138,6 +148,8 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         balanced = first_of_plants(tested, 2)
         remaining = [move for move in tested if move not in balanced]
         yield from centre(tested, seed)
+        yield from limited(balanced, seed)
+        yield from few(balanced, seed)
         yield from crossing(balanced, seed)
         yield from kinds(balanced, seed)
         yield from papers(balanced, seed)
@@ -147,6 +159,7 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         yield from large(tested, seed)
         yield from papers(remaining, seed)
         yield from crossing(remaining, seed)
+        yield from limited(remaining, seed)
         yield from million(tested, seed)
 
 
@@ -187,6 +200,33 @@ def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                     yield Planned("crossing", seed, case, method, budget)
                 for method in SMALL if budget == BUDGETS[0] else ():
                     yield Planned("crossing", seed, case, method, budget, SMALL_POPULATION)
+
+
+def limited(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Limits of torque, or of acceleration and jerk, tight and loose."""
+    for limits in LIMITS:
+        for move in moves:
+            case = Case(move, limits=limits)
+            for points in LADDER[:-1] if not seed else ():
+                yield Planned("limits", 0, case, "epsilon", None, (("points", points),))
+            for budget in BUDGETS:
+                for method in LIMITED:
+                    small = budget == BUDGETS[0] and method in AT_FEW
+                    settings = SMALL_POPULATION if small else ()
+                    yield Planned("limits", seed, case, method, budget, settings)
+
+
+def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """200 candidates, without and with noise; with noise 1,000 as well."""
+    for share in (0.0, NOISES[0]):
+        for budget in (FEW, *BUDGETS[:1]) if share else (FEW,):
+            for move in moves:
+                case = Case(move)
+                for method in AT_FEW:
+                    yield Planned("few", seed, case, method, budget, SMALL_POPULATION, share)
+                yield Planned("few", seed, case, "random", budget, noise=share)
+                settings = (("step", WIDE_STEPS[0]),) if share else ()
+                yield Planned("few", seed, case, "slsqp", budget, settings, share)
 
 
 def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:

@@ -14,6 +14,7 @@ from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
 from .energies import energy_of
+from .limits import limits_of
 from .moves import Move, draw, plants
 from .shared_terms import SharedTerms, scale_of_every_number
 from .tables import write_table
@@ -36,25 +37,30 @@ class Case:
         Of the energy, as of `energy_of`.
     peaks : tuple of str
         Objectives beside residual and energy.
+    limits : str
+        Limits of the move, as of `limits_of`; empty for none.
     """
 
     move: Move
     terms: int = CENTRE_TERMS
     kind: str = CENTRE_KIND
     peaks: tuple[str, ...] = ()
+    limits: str = ""
 
     @property
     def name(self) -> str:
         """Of move, coefficients and energy; files are called by it."""
         more = f"-{2 + len(self.peaks)}-objectives" if self.peaks else ""
+        more += f"-{self.limits}" if self.limits else ""
         return f"{self.move.name}-{self.terms}-{self.kind}{more}"
 
     @property
     def task(self) -> qa.PointToPoint:
-        """The move with its energy."""
+        """The move with its energy and limits."""
         move = self.move
         energy = energy_of(self.kind, move.plant, move.target, move.duration)
-        return qa.PointToPoint(move.plant, move.target, move.duration, energy=energy)
+        limits = limits_of(move.name, self.limits)
+        return qa.PointToPoint(move.plant, move.target, move.duration, energy=energy, **limits)
 
     @property
     def profile(self) -> JointProfile:
