@@ -52,7 +52,7 @@ include_patterns = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
 ]
-exclude_patterns = ["docs/_*"]
+exclude_patterns = ["docs/_*", "docs/paper/**"]
 html_theme, html_title = "furo", "quietarm"
 html_static_path, html_extra_path = ["_static"], ["_root"]
 html_css_files, html_js_files = ["site.css"], ["front.js", "scrolling.js"]

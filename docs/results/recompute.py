@@ -46,7 +46,12 @@ DRAWN = (
 )  # fmt: skip
 """What the picture of attained targets shows: eight lines at most."""
 MEASURES = ("points", "between")
-"""Of 50 points; of the 100 best with motions between them."""
+"""Hypervolume of 50 points; of the 100 best with motions between them."""
+INDICATORS = (*MEASURES, "igd+", "epsilon", "energy")
+"""IGD+ and additive epsilon of 50 points; energy within 1 mm."""
+NO_SUCH_MOTION = 1e3
+"""Excess of energy [%] that counts for a front without a motion within 1 mm."""
+LIMITS = ("torque-tight", "torque-loose", "jerk-tight", "jerk-loose")
 
 
 @dataclass(frozen=True)
@@ -186,6 +191,7 @@ class Results:
             name: min(filter(np.isfinite, values), default=np.inf)
             for name, values in energies.items()
         }
+        self._gaps = dict[tuple[int, str], float]()
         self._table = defaultdict[tuple[str, int, str], list[Run]](list)
         for run in self.runs:
             self._table[run.label, run.budget, run.problem].append(run)
@@ -200,6 +206,38 @@ class Results:
         if not np.isfinite(run.energy):
             return np.inf
         return 100 * (run.energy / self.least_energy[run.problem] - 1)
+
+    @cached_property
+    def reference(self) -> dict[str, Array]:
+        """The best points of all runs of a problem, without and with motions between."""
+        points_of = defaultdict[str, list[Array]](list)
+        for run in self.runs:
+            points_of[run.problem].append(run.points)
+            if len(run.between):
+                points_of[run.problem].append(run.between)
+        return {
+            name: moocore.filter_dominated(np.vstack(points)) for name, points in points_of.items()
+        }
+
+    def gap(self, run: Run, indicator: str) -> float:
+        """How far a front is from the best that is known [%], by an indicator.
+
+        Of the best known hypervolume, of the problem's scale (IGD+, epsilon), or of the energy.
+        """
+        key = id(run), indicator
+        if key not in self._gaps:
+            self._gaps[key] = self._gap(run, indicator)
+        return self._gaps[key]
+
+    def _gap(self, run: Run, indicator: str) -> float:
+        if indicator in MEASURES:
+            return self.missing(run, indicator)
+        if indicator == "energy":
+            return min(self.excess(run), NO_SUCH_MOTION)
+        if not len(run.points):
+            return NO_SUCH_MOTION
+        distance = moocore.igd_plus if indicator == "igd+" else moocore.epsilon_additive
+        return 100 * float(distance(run.points, ref=self.reference[run.problem]))
 
     def of(self, label: str, budget: int, problem: str) -> list[Run]:
         """The runs of a method with its settings on a problem."""
@@ -307,13 +345,13 @@ def compare(
     rows = list[dict[str, Any]]()
     for label, budget in searches:
         runs = [results.of(label, budget, name) for name in problems]
-        lacks = np.array([results.median(r, results.missing, measure) for r in runs])
+        lacks = np.array([results.median(r, results.gap, measure) for r in runs])
         excess = np.array([results.median(r, results.excess, measure) for r in runs])
         seconds = np.array([np.median([run.seconds for run in r]) for r in runs])
         controls = [against(name, spent) for name, spent in zip(problems, seconds, strict=True)]
         known = np.array([bool(control) for control in controls], dtype=bool)
         theirs = np.array(
-            [results.median(control, results.missing, measure) for control in controls if control]
+            [results.median(control, results.gap, measure) for control in controls if control]
         )
         row: dict[str, Any] = {
             "method": label,
@@ -401,6 +439,124 @@ def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> d
     return {"terms": terms, "budget": budget, "ways": ways}
 
 
+def by_indicator(results: Results, crossed: Sequence[str]) -> dict[str, dict[str, int]]:
+    """The best search of each cell of the map against the gradient to its end, by indicator.
+
+    Comparisons over cells and moves, and cells with a verdict before and after Holm's correction
+    over the cells.
+    """
+    figures = {}
+    for indicator in INDICATORS:
+        best = list[dict[str, Any]]()
+        for budget in (1_000, 10_000, 100_000):
+            for terms in (2, 4, 6, 10, 16, 24):
+                problems = results.problems(terms)
+                searches = [
+                    (label, spent)
+                    for label, spent in searches_in(
+                        results, ("centre", "crossing", "large"), budget, problems, 5
+                    )
+                    if label.partition(" ")[0] in crossed and not takes_slopes(label)
+                ]
+                rows = compare(results, problems, searches, indicator)
+                rows = [row for row in rows if row["moves"]]
+                if rows:
+                    best.append(min(rows, key=lambda row: row["missing"]))
+        over_cells = holm([row["holm"] for row in best])
+        verdicts = {"search": 0, "gradient": 0, "search_over_cells": 0, "gradient_over_cells": 0}
+        for row, p in zip(best, over_cells, strict=True):
+            winner = "search" if row["log_ratio"] < 0 else "gradient"
+            verdicts[winner] += row["holm"] <= LEVEL
+            verdicts[f"{winner}_over_cells"] += p <= LEVEL
+        figures[indicator] = {
+            "cells": len(best),
+            "comparisons": sum(row["moves"] for row in best),
+            "search_better": sum(row["moves_nearer"] for row in best),
+            **{name: int(count) for name, count in verdicts.items()},
+        }
+    return figures
+
+
+def limit_figures(results: Results) -> dict[str, dict[str, Any]]:
+    """With limits, by kind and budget: all methods against the gradient, and searches by rival."""
+    figures = dict[str, dict[str, Any]]()
+    for limits in LIMITS:
+        problems = results.problems(kind=f"absolute-{limits}")
+        for budget in (1_000, 10_000):
+            methods = searches_in(results, ("limits",), budget, problems, 5)
+            if not methods:
+                continue
+            searches = [pair for pair in methods if not takes_slopes(pair[0])]
+            figures[f"{limits}, {budget}"] = {
+                "limits": limits,
+                "budget": budget,
+                "methods": compare(results, problems, methods, "between"),
+                "same time": compare(
+                    results, problems, searches, "between", results.control_within
+                ),
+                "differences": compare(
+                    results, problems, searches, "between", by_label(results, DIFFERENCES, budget)
+                ),
+            }
+    return figures
+
+
+def few_figures(results: Results) -> list[dict[str, Any]]:
+    """With 200 and 1,000 candidates, without and with noise of 1 %."""
+    figures = list[dict[str, Any]]()
+    problems = sorted({run.problem for run in results.runs if run.axis == "few"})
+    for budget in (200, 1_000):
+        for noise in ("", "noise=0.01"):
+            labels = sorted(
+                {
+                    run.label
+                    for run in results.runs
+                    if run.axis in ("few", "crossing")
+                    and run.budget == budget
+                    and run.problem in problems
+                    and ("noise=0.01" in run.settings) == bool(noise)
+                }
+            )
+            methods = [
+                (label, budget)
+                for label in labels
+                if 2 * sum(bool(results.of(label, budget, name)) for name in problems)
+                > len(problems)
+            ]
+            if not methods:
+                continue
+            differences = min(
+                (label for label, _ in methods if label.startswith(DIFFERENCES)),
+                key=lambda label: _median(
+                    np.array(
+                        [
+                            results.median(results.of(label, budget, name), results.gap, "between")
+                            for name in problems
+                            if results.of(label, budget, name)
+                        ]
+                    )
+                ),
+            )
+            searches = [pair for pair in methods if not takes_slopes(pair[0])]
+            figures.append(
+                {
+                    "budget": budget,
+                    "noise": 0.01 if noise else 0.0,
+                    "methods": compare(results, problems, methods, "between"),
+                    "differences": compare(
+                        results, problems, searches, "between",
+                        by_label(results, differences, budget),
+                    ),
+                }
+            )  # fmt: skip
+    return figures
+
+
+def by_label(results: Results, label: str, budget: int) -> Rival:
+    """A method with a budget as the rival of searches."""
+    return lambda name, spent: results.of(label, budget, name)
+
+
 def lines_over(
     results: Results,
     places: Sequence[tuple[float, int, int]],
@@ -430,7 +586,7 @@ def lines_over(
     for measure in MEASURES:
         lines[measure] = {}
         for (method, x), by_move in table.items():
-            lacks = [results.median(by_move[move], results.missing, measure) for move in moves]
+            lacks = [results.median(by_move[move], results.gap, measure) for move in moves]
             line = lines[measure].setdefault(method, {"x": [], "y": []})
             line["x"].append(x)
             line["y"].append(max(float(np.median(lacks)), 1e-3))
@@ -476,7 +632,7 @@ def on_testing(results: Results, method: str) -> dict[str, Any]:
         default, better = (
             np.array(
                 [
-                    results.median(results.of(name, 10_000, problem), results.missing, measure)
+                    results.median(results.of(name, 10_000, problem), results.gap, measure)
                     for problem in problems
                 ]
             )
@@ -566,8 +722,8 @@ def prediction(
         runs = [r for label in searches if (r := results.of(label, budget, name))]
         if len(runs) < len(searches) or not results.control(name):
             continue
-        lacks = min(results.median(r, results.missing, measure) for r in runs)
-        theirs = results.median(results.control(name), results.missing, measure)
+        lacks = min(results.median(r, results.gap, measure) for r in runs)
+        theirs = results.median(results.control(name), results.gap, measure)
         values = [float(row[feature] or "nan") for feature in FEATURES]
         outcome = float(np.log10(max(lacks, 1e-3) / max(theirs, 1e-3)))
         data.append((Problem(name).plant, values, outcome))
@@ -814,7 +970,7 @@ def against_differences(results: Results, crossed: Sequence[str]) -> dict[str, A
     by_seed = defaultdict[int, list[float]](list)
     for name in results.problems(kind="integer"):
         for run in results.of(DIFFERENCES, budget, name):
-            by_seed[run.seed].append(results.missing(run, "between"))
+            by_seed[run.seed].append(results.gap(run, "between"))
     return {
         "kinds": by_kind,
         "random_starts": compare(
@@ -924,6 +1080,9 @@ def compute(folder: Path) -> dict[str, Any]:
         "tuned": tuned(results),
         "kinds": kind_figures(results),
         "noise": noise_figures(results),
+        "limits": limit_figures(results),
+        "few": few_figures(results),
+        "indicators": by_indicator(results, crossed),
         "differences": against_differences(results, crossed),
         "gain": gain_of_coefficients(results, crossed),
         "attained": {

@@ -1,0 +1,1 @@
+"""What asv times from one version to the next."""

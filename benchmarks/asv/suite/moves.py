@@ -26,13 +26,14 @@ def task_of(name):
 class Moves:
     """Plans and fronts when all functions are built."""
 
-    params = list(MOVES)
-    param_names = ["plant"]
+    params = tuple(MOVES)
+    param_names = ("plant",)
     timer = process_time
     timeout = 300
     rounds, repeat, number = 1, 5, 1
 
     def setup(self, name):
+        """Build all functions, which the timed calls then have."""
         self.task = task_of(name)
         self.profile = qa.CycloidPolynomial(6)
         qa.plan_move(self.task, self.profile)

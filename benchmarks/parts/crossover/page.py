@@ -6,7 +6,7 @@ import importlib.util
 import json
 import platform
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,8 @@ def write_page(results: Path, choose: Path | None = None) -> None:
     figures = recomputed(results)
     (results / "figures.json").write_text(json.dumps(figures, indent=1) + "\n")
     write_pictures(figures, results)
-    text = page_of(figures, results)
+    (results / "appendix.md").write_text(page_of("appendix.md", figures, results))
+    text = page_of("report.md", figures, results)
     (results / "report.md").write_text(text)
     choose = choose or results.parent / "choose.md"
     if choose.exists():
@@ -63,8 +64,8 @@ def recompute_module(results: Path) -> Any:
     return module
 
 
-def page_of(figures: Mapping[str, Any], results: Path) -> str:
-    """The page in Markdown."""
+def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
+    """Return a page in Markdown, filled in from the figures."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent),
         undefined=jinja2.StrictUndefined,
@@ -81,7 +82,7 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
         without_noise=without_noise,
     )
     moves = pd.read_csv(results / "moves.csv")
-    return environment.get_template("page.md").render(
+    return environment.get_template(template).render(
         figures=figures,
         moves=moves,
         plants=moves["plant"].unique().tolist(),
@@ -90,6 +91,7 @@ def page_of(figures: Mapping[str, Any], results: Path) -> str:
         verdicts=verdicts,
         cell_of=cell_of,
         best_of=best_of,
+        limits_over=limits_over,
         ladder=LADDER,
         ways=WAYS,
         row_of=row_of,
@@ -126,6 +128,46 @@ def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapp
     return next(
         cell["ways"] for cell in cells if (cell["terms"], cell["budget"]) == (terms, budget)
     )
+
+
+def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, str] | None:
+    """What the row with limits says: ranges over the kinds of limit; None before any run.
+
+    The search is the one whose largest gap over the kinds is least.
+    """
+    kinds = [kind for kind in limits.values() if kind["budget"] == budget]
+    if not kinds:
+        return None
+    labels = [row["method"] for row in kinds[0]["differences"]]
+    rows = {
+        label: [row for kind in kinds for row in kind["differences"] if row["method"] == label]
+        for label in labels
+    }
+    label = min(
+        (label for label in labels if len(rows[label]) == len(kinds)),
+        key=lambda label: max(row["missing"] for row in rows[label]),
+    )
+    chosen = rows[label]
+    gradient = [row_of(kind["methods"], label) or {} for kind in kinds]
+    clear = sum(row["holm"] <= 0.05 and row["log_ratio"] < 0 for row in chosen)
+    better = sum(row["moves_nearer"] for row in chosen)
+    return {
+        "name": label.partition(" ")[0],
+        "label": short_label(label),
+        "search": range_of(row["missing"] for row in chosen),
+        "differences": range_of(row["control"] for row in chosen),
+        "gradient": range_of(row["control"] for row in gradient),
+        "sure": (
+            f"better than SLSQP on {better} of {sum(row['moves'] for row in chosen)} moves, "
+            f"clearly with {clear} of {len(kinds)} kinds of limit"
+        ),
+    }
+
+
+def range_of(values: Iterable[float]) -> str:
+    """The least and the largest value, with two digits."""
+    known = sorted(values)
+    return f"{two_digits(known[0])} to {two_digits(known[-1])}"
 
 
 def row_of(rows: Sequence[Mapping[str, Any]], method: str) -> Mapping[str, Any] | None:

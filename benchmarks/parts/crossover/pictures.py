@@ -28,20 +28,22 @@ WAYS = (
     ("between, same time", "with motions between, in the search's time"),
 )
 VALUES = (
-    ("points, differences", "50 points each, differences with as many candidates"),
-    ("between, differences", "with motions between, differences with as many candidates"),
+    ("points, differences", "50 points each, SLSQP with as many candidates"),
+    ("between, differences", "with motions between, SLSQP with as many candidates"),
 )
+SMALL = 9.5
+"""Letters of a cell: they are read on a page that is 1400 pixels wide."""
 MOST_DECADES = 1.5
 """A ratio of this many decades has the darkest colour."""
 NORM = TwoSlopeNorm(0.0, -MOST_DECADES, MOST_DECADES)
 DIVERGING = LinearSegmentedColormap.from_list(
     "search or gradient", [grammar.SEARCH.colour, "white", grammar.PLAN.colour]
 )
-"""Of a cell, by who is nearer: as the lines of a search and of the gradient."""
+"""Of a cell, by who is better: as the lines of a search and of the gradient."""
 NO_FRONT = grammar.FAINT
 """Of a cell where the gradient has no front yet on most moves, so that nothing is compared."""
 FURTHER = grammar.looks([""] * 5)
-"""Looks of methods that are neither the gradient nor the nearest search."""
+"""Looks of methods that are neither the gradient nor the best search."""
 LOOK_OF: Mapping[str, Look] = {
     "gradient": grammar.PLAN,
     **dict(
@@ -51,7 +53,7 @@ LOOK_OF: Mapping[str, Look] = {
         )
     ),
     **dict(zip(("MOEA/D-DE", "MOEA/D-DE, five evaluations"), grammar.variants("search", 2))),
-    **dict(zip(("memetic MOEA/D-DE", "differences", "MO-CMA-ES", "NSGA-II", "GDE3"), FURTHER)),
+    **dict(zip(("memetic MOEA/D-DE", "SLSQP", "MO-CMA-ES", "NSGA-II", "GDE3"), FURTHER)),
 }
 """Of the methods that several pictures have."""
 
@@ -59,8 +61,9 @@ LOOK_OF: Mapping[str, Look] = {
 def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
     """All pictures of a page."""
     drawn = {
-        "map.png": map_figure(figures["map"], WAYS, "gradient"),
-        "values.png": map_figure(figures["map"], VALUES, "differences"),
+        "map.png": map_figure(figures["map"], WAYS[2:], "gradient"),
+        "ways.png": map_figure(figures["map"], WAYS, "gradient"),
+        "values.png": map_figure(figures["map"], VALUES, "SLSQP"),
         "coefficients.png": coefficients_figure(figures["map_rows"]),
         "budget.png": budget_figure(figures["map_rows"]),
         "attained.png": attained_figure(figures["attained"]),
@@ -70,8 +73,9 @@ def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
     if any(figures["noise"].values()):
         drawn["noise.png"] = noise_figure(figures["noise"])
     for_phones = {
-        "map.png": narrow_map_figure(figures["map"], WAYS, "gradient"),
-        "values.png": narrow_map_figure(figures["map"], VALUES, "differences"),
+        "map.png": narrow_map_figure(figures["map"], WAYS[2:], "gradient"),
+        "ways.png": narrow_map_figure(figures["map"], WAYS, "gradient"),
+        "values.png": narrow_map_figure(figures["map"], VALUES, "SLSQP"),
     }
     for name, figure in drawn.items():
         if figure is not None:
@@ -95,11 +99,10 @@ def new_figure(width: float, height: float) -> Figure:
 def map_figure(
     cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> Figure:
-    """Coefficients by budget: orange where a search is nearer, blue where its rival is."""
-    rows = len(ways) // 2
-    figure = new_figure(11.0, 1.1 + 3.15 * rows)
+    """Coefficients by budget: orange where a search is better, blue where its rival is."""
+    figure = new_figure(11.0, 1.1 + 3.4 * len(ways))
     _head_of_map(figure, cells, ways, rival)
-    axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
+    axes = figure.subplots(len(ways), 1, sharex=True, squeeze=False)
     terms = sorted({cell["terms"] for cell in cells})
     budgets = sorted({cell["budget"] for cell in cells})
     for ax, (way, title) in zip(axes.flat, ways, strict=True):
@@ -121,7 +124,8 @@ def map_figure(
     for ax in axes[:, 0]:
         ax.set_ylabel("candidates")
     bar = figure.colorbar(_scale_of_map(), ax=axes, shrink=0.6, ticks=[-1, 0, 1])
-    bar.ax.set_yticklabels(["search misses a tenth", "alike", "search misses tenfold"], fontsize=8)
+    words = ["a tenth of\nthe gap", "alike", "ten times\nthe gap"]
+    bar.ax.set_yticklabels(words, fontsize=SMALL)
     return figure
 
 
@@ -155,7 +159,7 @@ def narrow_map_figure(
         _scale_of_map(), ax=list(axes), location="bottom", ticks=[-1, 0, 1], fraction=0.02,
         aspect=25, pad=0.01,
     )  # fmt: skip
-    words = ["search misses\na tenth", "alike", "search misses\ntenfold"]
+    words = ["a tenth of\nthe gap", "alike", "ten times\nthe gap"]
     bar.ax.set_xticklabels(words, fontsize=8)
     return figure
 
@@ -163,12 +167,12 @@ def narrow_map_figure(
 def _head_of_map(
     figure: Figure, cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> None:
-    """Who is nearer in how many cells, and what the cells say."""
+    """Say who is better in how many cells, and what the cells show."""
     head(
         figure,
         _counted(cells, ways, rival),
-        f"Per cent of the best known hypervolume that the nearest search misses, and that "
-        f"{_the(rival)} {'misses' if rival == 'gradient' else 'miss'}; medians over moves",
+        f"Hypervolume gaps of the best search and of {_the(rival)}; medians over moves. "
+        "Lines: not significant; dots: too few moves",
     )
 
 
@@ -180,22 +184,22 @@ def _scale_of_map() -> matplotlib.cm.ScalarMappable:
 def _counted(
     cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> str:
-    """On how many cells the rival is nearer, and a search, with a verdict."""
+    """Count the cells in which the rival is better, and a search, with a verdict."""
 
-    def nearer(side: str, ending: str) -> int:
+    def better(side: str, ending: str) -> int:
         return sum(len(verdicts(cells, way)[side]) for way, _ in ways if way.endswith(ending))
 
-    panels = 2  # of a row: two ways to compare
-    total = panels * verdicts(cells, ways[0][0])["run"]
+    alike = sum(way.endswith(ways[0][0].partition(", ")[2]) for way, _ in ways)
+    total = alike * verdicts(cells, ways[0][0])["run"]
     if rival != "gradient":
         return (
-            f"{_the(rival).capitalize()} are nearer in {nearer('gradient', '')} of {total} cells, "
-            f"a search in {nearer('search', '')}"
+            f"{rival} is better in {better('gradient', '')} of {total} cells, "
+            f"a search in {better('search', '')}"
         )
     return (
-        f"The gradient is nearer in {nearer('gradient', 'end')} of {total} cells if it runs to its "
-        f"end, a search in {nearer('search', 'end')}; in the search's time in "
-        f"{nearer('gradient', 'time')} and {nearer('search', 'time')}"
+        f"The gradient is better in {better('gradient', 'end')} of {total} cells if it runs to its "
+        f"end, a search in {better('search', 'end')}; in the search's time in "
+        f"{better('gradient', 'time')} and {better('search', 'time')}"
     )
 
 
@@ -211,7 +215,7 @@ def draw_cell(
     rival: str,
     wide: bool = False,
 ) -> None:
-    """What the nearest search lacks and its rival; hatched or dotted without a verdict.
+    """The gaps of the best search and its rival; hatched or dotted without a verdict.
 
     In a wide cell the search's name is in one line.
     """
@@ -243,7 +247,7 @@ def middle(
     """Text in the middle of a cell, on white where that is hatched."""
     box = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 1}
     ax.text(
-        corner[0] + 0.5, corner[1] + 0.5, text, ha="center", va="center", fontsize=7.5,
+        corner[0] + 0.5, corner[1] + 0.5, text, ha="center", va="center", fontsize=SMALL,
         color=colour, bbox=box if hatched else None,
     )  # fmt: skip
 
@@ -294,12 +298,12 @@ def labelled_lines(ax: Axes, lines: Mapping[str, tuple[Any, Any]], *, log_y: boo
 
 
 def coefficients_figure(rows: Mapping[str, Any]) -> Figure:
-    """What methods lack over the number of coefficients, 10,000 candidates."""
+    """Gaps over the number of coefficients, 10,000 candidates."""
     return _lines_figure(rows["by_terms"], "coefficients", "10,000 candidates")
 
 
 def budget_figure(rows: Mapping[str, Any]) -> Figure:
-    """What methods lack over the budget, six coefficients."""
+    """Gaps over the budget, six coefficients."""
     return _lines_figure(rows["by_budget"], "candidates", "six coefficients")
 
 
@@ -313,9 +317,9 @@ def _lines_figure(lines: Mapping[str, Any], axis: str, fixed: str) -> Figure:
     }
     head(
         figure,
-        f"With {first} and {last} {axis} MOEA/D-DE misses {misses['moead-de']} %, the gradient "
-        f"{misses['epsilon points=50']} %, with motions between",
-        f"What fronts lack of the best known hypervolume; medians over moves, {fixed}",
+        f"With {first} and {last} {axis} MOEA/D-DE has a gap of {misses['moead-de']} %, "
+        f"the gradient {misses['epsilon points=50']} %, with motions between",
+        f"Gaps to the best known hypervolume; medians over moves, {fixed}",
     )
     for ax, measure, title in zip(
         figure.subplots(1, 2), ("points", "between"), ("50 points each", "with motions between"),
@@ -371,12 +375,12 @@ def _over_groups(
     width: float,
     sentence: str,
 ) -> Figure:
-    """What methods lack in each group: lines of the gradient and of seven others at most."""
+    """Gaps in each group: lines of the gradient and of seven others at most."""
     figure = new_figure(width, 4.1)
     head(
         figure,
         sentence,
-        "What fronts, with motions between, lack of the best known hypervolume; medians over "
+        "Gaps to the best known hypervolume, with motions between; medians over "
         "moves, six coefficients, 10,000 candidates",
     )
     ax = figure.subplots()
@@ -402,13 +406,13 @@ def _over_groups(
 
 
 def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
-    """What methods lack by the kind of energy."""
+    """Gaps by the kind of energy."""
     words = {
         "copper": "copper, smooth", "absolute": "|power|", "stages": "in stages",
         "motor-map": "motor's map, jumps", "integer": "an integer",
     }  # fmt: skip
     groups = {kind: kinds[kind] for kind in words if kinds[kind]}
-    if "integer" in groups:  # differences keep the number with which they start
+    if "integer" in groups:  # SLSQP keeps the number with which they start
         groups["integer"] = [row for row in groups["integer"] if row["method"] != "slsqp"]
     if not groups:
         return None
@@ -417,7 +421,7 @@ def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
         for kind in ("absolute", "motor-map")
     )
     sentence = (
-        f"With |power| MOEA/D-DE misses {two_digits(usual['missing'])} %, the gradient "
+        f"With |power| MOEA/D-DE has a gap of {two_digits(usual['missing'])} %, the gradient "
         f"{two_digits(usual['control'])} %; with a map that jumps "
         f"{two_digits(jumping['missing'])} and {two_digits(jumping['control'])} %"
     )
@@ -425,7 +429,7 @@ def kinds_figure(kinds: Mapping[str, Any]) -> Figure | None:
 
 
 def noise_figure(noise: Mapping[str, Any]) -> Figure:
-    """What searches lack where they see objectives with noise, and the gradient, which has none."""
+    """Gaps of searches that see objectives with noise, and of the gradient, which has none."""
     rows = {
         share: [{**row, "method": without_noise(row["method"])} for row in compared]
         for share, compared in noise.items()
@@ -436,8 +440,8 @@ def noise_figure(noise: Mapping[str, Any]) -> Figure:
     by_differences = [row for row in compared if row["method"].startswith("slsqp")]
     best = min(by_differences, key=lambda row: row["missing"])
     sentence = (
-        f"With noise of {100 * float(share):g} % MOEA/D-DE misses {misses['moead-de']} %, "
-        f"differences at best {two_digits(best['missing'])} %"
+        f"With noise of {100 * float(share):g} % MOEA/D-DE has a gap of {misses['moead-de']} %, "
+        f"SLSQP at best {two_digits(best['missing'])} %"
     )
     labels = {"0": "no noise", "0.01": "noise of 1 %", "0.05": "noise of 5 %"}
     return _over_groups(rows, labels, 7.5, sentence)
@@ -481,8 +485,6 @@ def features_figure(prediction: Mapping[str, Any]) -> Figure | None:
         if name == "within_1mm":
             ax.set_xscale("symlog", linthresh=1e-4)
         ax.grid(alpha=0.25)
-    figure.axes[0].set_ylabel(
-        "log10 of what the nearest search\nmisses over what the gradient does"
-    )
+    figure.axes[0].set_ylabel("log10 of the gap of the best search\nover that of the gradient")
     figure.axes[0].legend(fontsize=7)
     return figure

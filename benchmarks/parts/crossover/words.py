@@ -17,13 +17,14 @@ LABELS = {
     "gde3 population=20": "GDE3 of 20",
     "moead-de population=20": "MOEA/D-DE of 20",
     "moead-de reevaluate=5": "MOEA/D-DE, five evaluations",
-    "slsqp": "differences",
-    "slsqp continuation=False": "differences, random starts",
-    "slsqp step=0.01": "differences of 1 % of the box",
-    "slsqp step=0.1": "differences of 10 % of the box",
+    "nsga2 population=20": "NSGA-II of 20",
+    "slsqp": "SLSQP",
+    "slsqp continuation=False": "SLSQP, random starts",
+    "slsqp step=0.01": "SLSQP, steps of 1 % of the box",
+    "slsqp step=0.1": "SLSQP, steps of 10 % of the box",
 }
 RANDOM_STARTS = "continuation=False"
-"""Setting of the differences that pictures leave out."""
+"""Setting of SLSQP that pictures leave out."""
 
 
 def short_label(method: str) -> str:
