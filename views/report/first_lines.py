@@ -12,10 +12,8 @@ from quietarm.ocp.rest import is_at_rest
 from quietarm.ocp.task import PointToPoint
 from quietarm.views.report.acting_words import ranges_words
 from quietarm.views.report.captions import left_words
+from quietarm.views.report.terminal import LEAST_WIDTH
 from quietarm.views.tips import tip_words
-
-_WIDTH = 100
-"""Columns of a line; an answer that is longer is a sentence a line."""
 
 
 def plan_answer(plan: Plan, *, fastest: bool = False) -> list[str]:
@@ -80,7 +78,7 @@ def _beside_the_cycloid(words: Sequence[str], motion: JudgedMotion) -> list[str]
     if cycloid is not None and not _is_the_same(motion, cycloid):
         clauses.append(f"the plain cycloid takes {_energy_and_end(cycloid)}")
     line = "; ".join(clauses)
-    whole = [line] if len(line) < _WIDTH else clauses
+    whole = [line] if len(line) < LEAST_WIDTH else clauses
     return [_sentence(words) for words in whole]
 
 

@@ -22,11 +22,10 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     `given` are those that the user gave.
     """
     rows = [("plant", machine.plant.name)]
-    rows += [
-        (_called(machine.plant, estimate.parameter), text)
-        for estimate in machine.estimates
-        for text in _estimate(machine.plant, estimate)
-    ]
+    for estimate in machine.estimates:
+        mean, *next_swing = _estimate(machine.plant, estimate)
+        rows.append((_called(machine.plant, estimate.parameter), mean))
+        rows += [("  next swing", text) for text in next_swing]
     rows += [
         (name, f"not identifiable: {why}; {_instead(machine, name, given)}")
         for name, why in machine.not_identifiable.items()
@@ -234,5 +233,5 @@ def _estimate(plant: Plant, estimate: Estimate) -> list[str]:
     lines = [f"{text(estimate.value)}{words}, within {ends}{words} (95 %)"]
     if estimate.next_low is not None and estimate.next_high is not None:
         ends = f"{text(estimate.next_low)} to {text(estimate.next_high)}"
-        lines.append(f"of the next swing within {ends}{words} (95 %)")
+        lines.append(f"within {ends}{words} (95 %)")
     return lines

@@ -18,15 +18,19 @@ from quietarm.views.report.table_width import narrow_tables
 if TYPE_CHECKING:
     from quietarm.views.report.report import Report
 
+LEAST_WIDTH = 100
+"""Columns that a sentence may take, however narrow the console."""
+
 
 def show_all(console: Console, *parts: Report | Sequence[tuple[str, str]] | str) -> None:
     """Print reports, facts and lines, one below the other; empty ones are left out.
 
-    Nothing is wider than the console: a line that would be goes on in the next one, indented.
+    Nothing is wider than the console, or than a hundred columns where that is narrower, so that
+    the first line is whole: a line that would be goes on in the next one, indented.
     """
     for part in filter(None, parts):
         if isinstance(part, str):
-            print_lines(console, *wrapped(part, console.width))
+            print_lines(console, *wrapped(part, max(console.width, LEAST_WIDTH)))
         elif isinstance(part, Sequence):
             show_facts(console, part)
         else:
@@ -94,7 +98,7 @@ def show(console: Console, report: Report) -> None:
     from rich.markdown import Markdown  # not at the top: it takes long to load
 
     if report.answer:
-        print_lines(console, *in_clauses(report.answer, console.width))
+        print_lines(console, *in_clauses(report.answer, max(console.width, LEAST_WIDTH)))
     text = printable(report.markdown(with_answer=False))
     lines = [line for line in text.splitlines() if not line.startswith("![")]
     console.print(Markdown("\n".join(_narrowed(lines, console.width))))
