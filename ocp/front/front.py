@@ -368,7 +368,7 @@ class Front(Answer):
 
     @property
     def has_knee(self) -> bool:
-        """Whether the front bends: its ends have sums that are a tenth above the knee's."""
+        """Whether the knee is between the ends, and not chance on a nearly straight front."""
         return has_knee(self.objective_values, self.reference)
 
     def _nonempty(self) -> Sequence[FrontPoint]:

@@ -292,6 +292,9 @@ def point_of(motion: JudgedMotion, objectives: Sequence[str]) -> FrontPoint:
 BENDS = 0.1
 """By what share the sum of a knee's objectives is below those of the front's ends, at least."""
 
+BESIDE = 0.05
+"""How far a knee is from each end at least, as a share of the corner."""
+
 
 def knee_of(points: NDArray[np.float64], corner: ArrayLike) -> int:
     """Return which point has the least sum of its objectives, as shares of a corner.
@@ -307,21 +310,27 @@ def knee_of(points: NDArray[np.float64], corner: ArrayLike) -> int:
     corner : array_like, shape (objectives,)
         The value of each that counts as 1.
     """
-    return int(np.argmin(_shares(points, corner)))
+    return int(np.argmin(_shares(points, corner).sum(axis=1)))
 
 
 def has_knee(points: NDArray[np.float64], corner: ArrayLike) -> bool:
-    """Whether a front bends: the sum of the knee is a tenth below the sums of the ends.
+    """Whether the knee is between the ends of a front, and not chance.
 
-    On a front that is nearly straight, which point has the least sum is chance.
+    It is no end: its residual is a twentieth of the corner's at least, and each other objective as
+    much above the least of the front. On a front that is nearly straight, which point has the least
+    sum is chance: the sum has to be a tenth below those of the ends.
     """
     if len(points) < 3:
         return False
-    sums = _shares(points, corner)
+    shares = _shares(points, corner)
+    sums = shares.sum(axis=1)
+    least = shares.min(axis=0)
+    least[0] = 0.0  # of residuals that is rest, wherever the front begins
+    is_between = (shares[np.argmin(sums)] - least >= BESIDE).all()
     of_ends = sums[np.argmin(points, axis=0)]
-    return bool(sums.min() <= (1 - BENDS) * of_ends.min())
+    return bool(is_between and sums.min() <= (1 - BENDS) * of_ends.min())
 
 
 def _shares(points: NDArray[np.float64], corner: ArrayLike) -> NDArray[np.float64]:
-    """Return the sum of the objectives of every point, each a share of the corner's."""
-    return (points / np.asarray(corner, dtype=float)).sum(axis=1)
+    """Return the objectives of every point as shares of the corner's."""
+    return points / np.asarray(corner, dtype=float)

@@ -169,7 +169,7 @@ def _chosen_points(front: Front) -> list[str]:
     width = max(15, *(len(name) + 1 for name in chosen))
     lines = [f"  {name:{width}}{_point_in_words(front, point)}" for name, point in chosen.items()]
     if not front.has_knee and len(front.points) > 2:
-        lines.insert(1, f"  {'knee':{width}}none, the front is nearly straight")
+        lines.insert(1, f"  {'knee':{width}}none between the ends")
     return lines
 
 

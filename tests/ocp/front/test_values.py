@@ -86,6 +86,7 @@ def test_the_knee_has_the_least_sum_of_shares_whatever_the_ends(figures):
         ((0.9, 0.75, 0.3), False),  # 0.9, 0.85, 1.2: less than a tenth below the end
         ((0.3, 0.25, 0.1), False),  # 0.3, 0.35, 1.0: the end is least
         ((0.9, 0.3), False),  # its ends alone
+        ((0.9, 0.31, 0.3), False),  # 0.9, 0.41, 1.2: beside the cheap end
     ],
 )
 def test_a_front_has_a_knee_if_it_bends_by_a_tenth(energies, bends):

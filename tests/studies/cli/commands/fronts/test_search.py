@@ -34,7 +34,7 @@ def test_one_search_is_shown_and_written(call):
     lines = out.splitlines()
     assert lines[0] == f"{caption_of_front(front)}."
     ends = (front.smallest_residual(), front.cheapest())
-    assert lines[2] == "  knee           none, the front is nearly straight"
+    assert lines[2] == "  knee           none between the ends"
     for line, point in zip(lines[1:4:2], ends, strict=True):
         assert line.endswith(f"{point.energy:.4g} J at {point.residual * 1e3:.3g} mm")
     assert lines[4].startswith(f"vepso, seed 3: {len(front.points)} points, 64 candidates in ")
