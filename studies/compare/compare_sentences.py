@@ -68,6 +68,11 @@ def answer_of_fronts(comparison: Comparison) -> str:
         if reached:
             within = tip_words(level, tip_unit)
             clauses = [f"{group.label} takes {energy:.4g} J" for energy, group in reached]
+            clauses += [
+                f"{group.label} has no such motion"
+                for median, group in medians
+                if not isfinite(median)
+            ]
             named = clauses[:_MOST_NAMED]
             return f"Within {within}, {'; '.join(named)}{_gaps(comparison, reached[0][1])}."
     most = tip_words(max(comparison.levels), tip_unit)
