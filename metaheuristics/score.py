@@ -51,7 +51,7 @@ class Scale:
     stations : ndarray, shape (n, objectives)
         Points of the front to come near to, in this scale.
     whole : float
-        The hypervolume that counts as 1.
+        The hypervolume that counts as 1: the reference front's.
     """
 
     ideal: Array
@@ -102,7 +102,7 @@ class Reference(Scale):
         ideal = points.min(axis=0)
         nadir = points.max(axis=0)
         stations = (points - ideal) / (nadir - ideal)
-        super().__init__(ideal, nadir, stations, _whole_of(stations))
+        super().__init__(ideal, nadir, stations, whole_of(stations))
         object.__setattr__(self, "front", front)
 
 
@@ -180,14 +180,14 @@ class Indicator(ABC):
 
 
 class Hypervolume(Indicator):
-    """The volume that points dominate up to the corner, as a share of the whole there."""
+    """The volume that points dominate up to the corner, as a share of the reference front's."""
 
     name = "hypervolume"
     unit = "%"
     more_is_better = True
     meaning = (
-        "area that a front dominates, as a share, up to a tenth of the reference front's extent "
-        "beyond its ends"
+        "area that a front dominates, up to a tenth of the reference front's extent beyond its "
+        "ends, as a share of the reference front's area"
     )
     form = ".4f"
 
@@ -241,6 +241,15 @@ def _indicator_of(kind: type[Indicator]) -> Indicator:
 
 
 HYPERVOLUME = _indicator_of(Hypervolume)
+
+
+GAP = "hypervolume gap [%]"
+"""The heading of what a front lacks of the reference front's hypervolume: see `gap`."""
+
+
+def gap(score: float) -> float:
+    """Return the hypervolume gap [%] of a score of `HYPERVOLUME`: what the reference has more."""
+    return 100 * (1 - score)
 
 
 def objectives(front: Front) -> Array:
@@ -360,8 +369,11 @@ def _neighbours(points: Array) -> list[tuple[int, int]]:
     return sorted(pairs)
 
 
-def _whole_of(stations: Array) -> float:
-    """Return the volume that a reference front dominates, up to the corner."""
+def whole_of(stations: Array) -> float:
+    """Return the volume that a reference front dominates up to the corner, of its scaled points.
+
+    Of two objectives they are samples of a line, and the area is that above it.
+    """
     if stations.shape[1] > len(RESIDUAL_AND_ENERGY):
         return float(moocore.hypervolume(stations, ref=[CORNER] * stations.shape[1]))
     return _hypervolume_of_line(stations)

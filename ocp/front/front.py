@@ -31,6 +31,7 @@ from quietarm.ocp.front.points import (
     FrontPoint,
     Mark,
     evaluated,
+    has_knee,
     knee_of,
     non_dominated,
 )
@@ -357,9 +358,18 @@ class Front(Answer):
         return np.array(rows, dtype=float).reshape(len(rows), self.profile.size)
 
     def knee(self) -> FrontPoint:
-        """The point farthest below the plane through the ends, all objectives scaled."""
+        """Return the point with the least sum of its objectives, as shares of `reference`.
+
+        These are the plain cycloid's residual and twice its energy, so that a front has the same
+        knee by whichever method it is found. Whether it bends there is said by `has_knee`.
+        """
         points = self._nonempty()
-        return points[knee_of(self.objective_values)]
+        return points[knee_of(self.objective_values, self.reference)]
+
+    @property
+    def has_knee(self) -> bool:
+        """Whether the knee is between the ends, and not chance on a nearly straight front."""
+        return has_knee(self.objective_values, self.reference)
 
     def _nonempty(self) -> Sequence[FrontPoint]:
         if len(self.points) == 0:

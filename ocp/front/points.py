@@ -290,30 +290,47 @@ def point_of(motion: JudgedMotion, objectives: Sequence[str]) -> FrontPoint:
 
 
 BENDS = 0.1
-"""How far a knee lies below the line through the ends, as a share of the objectives' spans."""
+"""By what share the sum of a knee's objectives is below those of the front's ends, at least."""
+
+BESIDE = 0.05
+"""How far a knee is from each end at least, as a share of the corner."""
 
 
-def knee_of(points: NDArray[np.float64]) -> int:
-    """Which of the points, a column an objective, is farthest below the plane through the ends.
+def knee_of(points: NDArray[np.float64], corner: ArrayLike) -> int:
+    """Return which point has the least sum of its objectives, as shares of a corner.
 
-    All objectives are scaled; the first one where there are fewer than three or no trade-off.
+    The corner is `Front.reference`, which follows from the task alone: where the ends of a front
+    lie, and so by which method it was found, does not matter. The sum is least where a step along
+    the front costs as large a share of one objective as it saves of the other.
+
+    Parameters
+    ----------
+    points : ndarray, shape (points, objectives)
+        Residuals [m], energies [J] and peaks.
+    corner : array_like, shape (objectives,)
+        The value of each that counts as 1.
     """
-    return _farthest_below(points)[0]
+    return int(np.argmin(_shares(points, corner).sum(axis=1)))
 
 
-def has_knee(points: NDArray[np.float64]) -> bool:
-    """Whether a front bends: a point lies a tenth of the spans below the plane through the ends.
+def has_knee(points: NDArray[np.float64], corner: ArrayLike) -> bool:
+    """Whether the knee is between the ends of a front, and not chance.
 
-    On a front that is nearly straight, which point is farthest below is chance.
+    It is no end: its residual is a twentieth of the corner's at least, and each other objective as
+    much above the least of the front. On a front that is nearly straight, which point has the least
+    sum is chance: the sum has to be a tenth below those of the ends.
     """
-    return _farthest_below(points)[1] >= BENDS
+    if len(points) < 3:
+        return False
+    shares = _shares(points, corner)
+    sums = shares.sum(axis=1)
+    least = shares.min(axis=0)
+    least[0] = 0.0  # of residuals that is rest, wherever the front begins
+    is_between = (shares[np.argmin(sums)] - least >= BESIDE).all()
+    of_ends = sums[np.argmin(points, axis=0)]
+    return bool(is_between and sums.min() <= (1 - BENDS) * of_ends.min())
 
 
-def _farthest_below(points: NDArray[np.float64]) -> tuple[int, float]:
-    """The point that is farthest below the plane through the ends, and how far, scaled."""
-    spans = np.ptp(points, axis=0)
-    if len(points) < 3 or not np.all(spans > 0):
-        return 0, 0.0
-    heights = ((points - points.min(axis=0)) / spans).sum(axis=1)
-    lowest = int(np.argmin(heights))
-    return lowest, float(1.0 - heights[lowest])
+def _shares(points: NDArray[np.float64], corner: ArrayLike) -> NDArray[np.float64]:
+    """Return the objectives of every point as shares of the corner's."""
+    return points / np.asarray(corner, dtype=float)

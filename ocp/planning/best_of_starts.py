@@ -52,7 +52,7 @@ def solve_from_starts(
             yield solver, [solution.coefficients for solution in least.values()]
         substitute = stand_in(solver) if thorough and has_stand_in else None
         if substitute is not None and not is_beyond(problem, starts[0]):
-            yield _briefly(substitute, problem, tried), starts[:2]
+            yield briefly(substitute, problem, tried), starts[:2]
 
     for attempting, guesses in attempts():
         if not guesses:
@@ -71,10 +71,10 @@ def solve_from_starts(
     return replace(solved[0], iterations=iterations), solved
 
 
-def _briefly(
+def briefly(
     solver: Solver, problem: Program, tried: Sequence[Solution], iterations: int = 120
 ) -> Solver:
-    """The solver with fewer iterations where all that was tried ended beyond a limit on the way."""
+    """Return the solver with fewer iterations if all that was tried ended beyond a limit."""
     infeasible = all(solution.status is SolveStatus.INFEASIBLE for solution in tried)
     if not (infeasible and problem.task.limits):
         return solver

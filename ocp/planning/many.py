@@ -14,7 +14,7 @@ from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
 from quietarm.ocp.limits import QUANTITIES, Quantity
-from quietarm.ocp.planning.best_of_starts import best_of_starts, is_beyond
+from quietarm.ocp.planning.best_of_starts import best_of_starts, briefly, is_beyond
 from quietarm.ocp.planning.certify import Certified, certify, finer_peaks
 from quietarm.ocp.planning.choose_profile import SIX, choose_profile
 from quietarm.ocp.planning.request import Request
@@ -122,12 +122,14 @@ def plan_moves(
         attempts += [(solver, plain), (solver, random)]
     else:
         solutions = best_of_starts(problems, [guesses] * len(problems), solver)
-    substitute = stand_in(solver)
-    if substitute is not None:
-        attempts.append((substitute, plain))
     hopeless = _refuse_the_unsolved(problems, solutions)
     for attempting, starts_of_all in attempts:
         _solve_the_unsolved(problems, solutions, starts_of_all, attempting, hopeless)
+    substitute = stand_in(solver)
+    if substitute is not None:
+        for i in _unsolved(solutions, hopeless):
+            attempting = briefly(substitute, problems[i], [solutions[i]])
+            _solve_these([i], problems, solutions, plain, attempting)
     moves = _MovesTable(problems, solutions)
     moves.certify(solver, guesses)
     return moves.to_moves()
@@ -160,15 +162,30 @@ def _solve_the_unsolved(
     hopeless: Collection[int],
 ) -> None:
     """Solve what has no solution yet from these starts, but for what is hopeless."""
-    unsolved = [
+    unsolved = _unsolved(solutions, hopeless)
+    if unsolved and starts:
+        _solve_these(unsolved, problems, solutions, starts, solver)
+
+
+def _unsolved(solutions: Sequence[Solution], hopeless: Collection[int]) -> list[int]:
+    """Return which moves have no solution yet, but for what is hopeless."""
+    return [
         i
         for i, solution in enumerate(solutions)
         if not solution.status.solved and i not in hopeless
     ]
-    if not unsolved or not starts:
-        return
-    again = [problems[i] for i in unsolved]
-    for i, solution in zip(unsolved, best_of_starts(again, [starts] * len(again), solver)):
+
+
+def _solve_these(
+    these: Sequence[int],
+    problems: Sequence[Program],
+    solutions: list[Solution],
+    starts: Sequence[Array],
+    solver: Solver,
+) -> None:
+    """Solve some moves from these starts, and keep what was solved."""
+    again = [problems[i] for i in these]
+    for i, solution in zip(these, best_of_starts(again, [starts] * len(again), solver)):
         if solution.status.solved:
             solutions[i] = solution
 

@@ -224,8 +224,8 @@ class ShapedCycloid(JointProfile):
     @property
     def label(self) -> str:
         """The shaper and its design frequencies."""
-        frequencies = " and ".join(f"{frequency:.4g}" for frequency in self.frequencies)
-        return f"{self.shaper} shaper for {frequencies} rad/s"
+        hertz = " and ".join(f"{frequency / math.tau:.4g}" for frequency in self.frequencies)
+        return f"{self.shaper} shaper for {hertz} Hz"
 
     @property
     def least_duration(self) -> float:

@@ -12,7 +12,7 @@ import pandas as pd
 
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.evaluation.population import ACCURACY
-from quietarm.metaheuristics.score import HYPERVOLUME, Indicator, known_indicators
+from quietarm.metaheuristics.score import GAP, HYPERVOLUME, Indicator, known_indicators
 from quietarm.ocp.front.points import LEVELS
 from quietarm.studies.bench.bench_pictures import curves_figure, profiles_figure, ranks_figure
 from quietarm.studies.bench.results import (
@@ -26,6 +26,7 @@ from quietarm.studies.bench.results import (
 from quietarm.studies.bench.statistics import (
     kruskal_on,
     moves_of,
+    p_against_best,
     pairs_on,
     ranking_over,
     say_power_of,
@@ -39,6 +40,8 @@ SHOWN_TARGET = 0.1
 _ENERGY = "energy_1mm"
 _STILL = f"within {1e3 * LEVELS[0]:g} mm"
 """How many runs have so small a residual."""
+_P = "p"
+"""Holm-adjusted p against the method of the smallest gap."""
 _COST = ("evaluations", "gradients", "hessians", "seconds")
 
 
@@ -183,7 +186,7 @@ def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
 
 def brief_report(results: Results) -> Report:
     """What a terminal shows: a narrow table and a verdict for each problem."""
-    columns = ["method", "runs", "missing [%]", _STILL, "seconds"]
+    columns = ["method", "runs", GAP, _P, _STILL, "seconds"]
     names = [problem.name for problem in results.problems]
     tables: dict[str, Any] = {
         name: problem_table(results, name)[columns].map(_rounded) for name in names
@@ -195,7 +198,23 @@ def brief_report(results: Results) -> Report:
         "copies": [run.label for run in results.copies],
         "windows": _windows(results),
     }
-    return Report("studies/bench/brief.md", values, tables)
+    return Report("studies/bench/brief.md", values, tables, answer=answer_of_bench(results))
+
+
+def answer_of_bench(results: Results) -> str:
+    """Return who has the smallest hypervolume gap, and by how much, in a sentence."""
+    (only, *others) = [problem.name for problem in results.problems]
+    table = summary_table(results) if others else problem_table(results, only)
+    first, *rest = zip(table["method"], table[GAP])
+    where = f"over {len(others) + 1} problems" if others else f"on {only}"
+    words = f"{first[0]} is best {where}: its hypervolume gap is {_gap_words(first[1])}"
+    if rest:
+        words += f"; {rest[0][0]} is next with {_gap_words(rest[0][1])}"
+    return f"{words}."
+
+
+def _gap_words(gap: float) -> str:
+    return f"{gap:.3g} %" if np.isfinite(gap) else "unknown"
 
 
 def _windows(results: Results) -> str:
@@ -219,13 +238,16 @@ def _repeated(results: Results) -> dict[str, list[str]]:
 
 
 def _rounded(cell: Any) -> Any:
-    return f"{cell:.3g}" if isinstance(cell, float) else cell
+    if not isinstance(cell, float):
+        return cell
+    return f"{cell:.3g}" if np.isfinite(cell) else "-"
 
 
 def problem_table(results: Results, problem: str) -> pd.DataFrame:
     """Medians over the runs of every method on a problem, best first."""
     rows = []
     table = results.table[results.table["problem"] == problem]
+    p_values = p_against_best(results, problem)
     for method, runs in table.groupby("method"):
         low, middle, high = (100 * share for share in quartiles(runs[MISSING]))
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
@@ -235,8 +257,9 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
             {
                 "method": bench_label(str(method)),
                 "runs": len(runs),
-                "missing [%]": middle,
+                GAP: middle,
                 "quartiles [%]": f"{low:.3g} to {high:.3g}",
+                _P: p_values.get(str(method)),
                 "with motions between [%]": 100 * quartiles(runs["missing_between"])[1],
                 **_medians(runs),
                 "energy above at 1 mm [%]": 100 * quartiles(runs["energy_1mm"])[1],
@@ -274,7 +297,7 @@ def summary_table(results: Results) -> pd.DataFrame:
                 "method": bench_label(str(method)),
                 "problems": len(medians),
                 "runs": len(runs),
-                "missing [%]": 100 * over[MISSING],
+                GAP: 100 * over[MISSING],
                 "with motions between [%]": 100 * over["missing_between"],
                 **_medians(medians),
                 "energy above at 1 mm [%]": 100 * over["energy_1mm"],
@@ -288,4 +311,4 @@ def summary_table(results: Results) -> pd.DataFrame:
 
 
 def _best_first(rows: list[dict[str, Any]]) -> pd.DataFrame:
-    return pd.DataFrame(rows).sort_values("missing [%]", ignore_index=True).replace(np.inf, np.nan)
+    return pd.DataFrame(rows).sort_values(GAP, ignore_index=True).replace(np.inf, np.nan)

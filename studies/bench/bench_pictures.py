@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from quietarm.metaheuristics.score import GAP
 from quietarm.studies.bench.results import Results, bench_label, derivative_free
 from quietarm.studies.bench.statistics import ALPHA, Ranking
 from quietarm.views.pictures.axes import TITLE, legend_below, logarithmic, new_figure
@@ -57,7 +58,7 @@ def curves_figure(results: Results, by: str = "seconds") -> Figure:
     for ax in axes[max(len(problems) - columns, 0) : len(problems)]:
         ax.set_xlabel(_COSTS[by])
     for ax in axes[: len(problems) : columns]:
-        ax.set_ylabel("hypervolume missing [%]")
+        ax.set_ylabel(GAP)
     legend_below(figure, axes, 4 if columns > 1 else 1, 8)
     return figure
 

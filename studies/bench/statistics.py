@@ -51,19 +51,19 @@ def say_power(runs: int, methods: int) -> str:
     if least >= ALPHA:
         usual = _runs_needed(pairs, lambda number: attainable_p(number, number))
         return (
-            f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no p by Holm can fall below "
-            f"{ALPHA}: {usual} runs are needed for a verdict, {needed} against a method that finds "
-            "the same from every seed"
+            f"with {counted(runs, 'run')} and {counted(pairs, 'pair')} no Holm-adjusted p can be "
+            f"below {ALPHA}; use at least {usual} runs, or {needed} to test against a "
+            "deterministic method"
         )
     words = (
-        f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least p "
-        f"that a pair can have, by Holm, is {least:.2g}"
+        f"with {runs} runs of each of {methods} methods ({counted(pairs, 'pair')}) the least "
+        f"Holm-adjusted p is {least:.2g}"
     )
     if against_one < ALPHA:
-        return f"{words}, or {against_one:.2g} where one of them finds the same from every seed"
+        return f"{words}, or {against_one:.2g} against a deterministic method"
     return (
-        f"{words}; against a method that finds the same from every seed it is {against_one:.2g}: "
-        f"no verdict can be had against one, {needed} runs are needed for that"
+        f"{words}, and {against_one:.2g} against a deterministic method; use at least {needed} "
+        "runs to test against one"
     )
 
 
@@ -288,8 +288,23 @@ def _same(known: Mapping[str, Mapping[str, Array]], first: str, second: str) -> 
     )
 
 
+def p_against_best(results: Results, problem: str, column: str = "missing") -> dict[str, float]:
+    """Return the Holm-adjusted p of every method against the best one on a problem, by name."""
+    medians = {name: quartiles(run)[1] for name, run in values_on(results, problem, column).items()}
+    if len(medians) < 2:
+        return {}
+    best = min(medians, key=lambda name: medians[name])
+    table = pairs_on(results, problem, column)
+    p_values = dict[str, float]()
+    for row in table.itertuples(index=False):
+        one, other, p = str(row.one), str(row.other), float(row.p_holm)
+        if best in (one, other):
+            p_values[other if one == best else one] = p
+    return p_values
+
+
 def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
-    """Which methods end nearest on a problem, in a sentence; none without power to say so.
+    """Return which method is best on a problem, in a sentence, if the runs can show it.
 
     Power is that of the test which a pair has: of few runs, a method that found the same from every
     seed cannot be told from any other.
@@ -306,14 +321,14 @@ def verdict_on(results: Results, problem: str, column: str = "missing") -> str:
     beside = table[(table["one"] == best) | (table["other"] == best)]
     powerless = beside["least_p_holm"] >= ALPHA
     if powerless.sum() == np.isfinite(beside["p"]).sum() > 0:
-        return f"no verdict: {say_power(runs, len(values))}"
+        return f"not significant: {say_power(runs, len(values))}"
     alike = beside["p_holm"] >= ALPHA
-    sentence = f"{bench_label(best)} ends nearest"
+    sentence = f"{bench_label(best)} is best"
     for which, words in (
         (alike & ~powerless, "not significantly different from it"),
         (
             alike & powerless,
-            f"not significantly different from it, as {runs} runs are too few to tell",
+            f"not significantly different from it, because {runs} runs are too few",
         ),
     ):
         named = {*beside[which]["one"], *beside[which]["other"]} - {best}

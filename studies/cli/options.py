@@ -278,6 +278,9 @@ SOLVER = solver_options()
 SENSITIVITIES = option("--sensitivities", is_flag=True, help="List by how much residual and energy "
                        "change with each parameter of the plant.")  # fmt: skip
 
+VERBOSE = option("--verbose", is_flag=True, help="Show in detail how the answer was found and "
+                 "checked.")  # fmt: skip
+
 
 def objectives_option(
     parse: Callable[[str], tuple[str, ...]] = parse_objectives, more: str = ""

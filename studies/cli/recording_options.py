@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from quietarm.machine.recordings.read_recording import Columns, ReadRecording, read_recording
+from quietarm.machine.tables.table import read_table
 from quietarm.models import Plant
 from quietarm.models.dimensions import words_of
 from quietarm.studies.cli.given import Given
@@ -46,7 +47,10 @@ def read_recordings(given: Given, paths: Sequence[Path], plant: Plant) -> list[R
         for quantity, column in given.pick("time", "angle", *rings).items()
     }
     if not any(names[quantity] for quantity in rings):
-        raise click.UsageError("give the column of what rings: --tip, --acceleration or --torque")
+        raise click.UsageError(
+            "give the column of what rings: --tip, --acceleration or --torque"
+            f"; {paths[0]}: {read_table(paths[0]).listed()}"
+        )
     if given.rate and given.time:
         raise click.UsageError("--rate is for files without a column of the time; leave --time out")
     units = given.units or {}

@@ -74,10 +74,10 @@ def answer_of(motions: Sequence[ComparedMotion], plant: Plant) -> str:
     first, *others = order
     acting = _acting(first)
     band = tip_words(acting.band, plant.tip_unit)
-    words = f"Within {band} {ranges_words(acting.ranges)}: "
+    within = f"within {band} {ranges_words(acting.ranges)}"
     if math.isinf(acting.latest.after):
-        return f"{words}no motion keeps the tip in the band."
-    words += f"{first.name} may act first, {_after_and_energy(first)}"
+        return f"No motion keeps the tip {within}."
+    words = f"{first.name} may act first, {_after_and_energy(first)}, {within}"
     same_kind = [motion for motion in others if motion.is_baseline == first.is_baseline]
     rivals = [motion for motion in others if motion.is_baseline != first.is_baseline]
     if rivals:
@@ -108,7 +108,7 @@ def _time_words(judged: ComparedMotion) -> str:
 
 def _after_and_energy(judged: ComparedMotion) -> str:
     assert judged.motion is not None
-    return f"{_time_words(judged)}, and takes {judged.motion.energy:.3g} J"
+    return f"{_time_words(judged)} and for {judged.motion.energy:.3g} J"
 
 
 def acting_table(motions: Sequence[ComparedMotion], plant: Plant) -> pd.DataFrame:

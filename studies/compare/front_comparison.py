@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics.run_files import BESIDE_SETTINGS
-from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, within
+from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, whole_of, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
 from quietarm.ocp.checks import takes
@@ -99,8 +99,7 @@ class Comparison:
         peaks are.
     corner : tuple of float
         Residual [m], energy [J] and peaks up to which hypervolumes are measured, as in a bench: a
-        tenth of its extent beyond the ends of the reference front. They are shares of the box from
-        there to the least values of that front.
+        tenth of its extent beyond the ends of the reference front. They are shares of that front's.
     extent : tuple of float
         The same between the ends of the reference front: the units of IGD+ and additive epsilon, so
         that all objectives have the same weight.
@@ -193,7 +192,8 @@ def compare_fronts(
     best_front = best_of([_curve(cloud) for cloud in between])
     known = best_of(between) if reference is None else best_of([filled(reference)])
     smallest_extent = np.max([front.reference for front in fronts], axis=0)
-    scale = _scale_of(known, smallest_extent)
+    is_line = reference is not None
+    scale = _scale_of(known, smallest_extent, is_line=is_line)
     corner = scale.ideal + CORNER * (scale.nadir - scale.ideal)
     extent = scale.nadir - scale.ideal
     best = within(best_front, levels)
@@ -226,13 +226,18 @@ def _curve(points: Array) -> Array:
     return points[:, : len(RESIDUAL_AND_ENERGY)]
 
 
-def _scale_of(known: Array, single: Array) -> Scale:
-    """The scale of a front's points; `single` is the extent of an objective with one value."""
+def _scale_of(known: Array, single: Array, *, is_line: bool) -> Scale:
+    """Return the scale of a front's points; `single` is the extent of an objective of one value.
+
+    The hypervolume that counts as 1 is that of the points, or of the line that they are samples of.
+    """
     ideal = known.min(axis=0)
     extent = np.ptp(known, axis=0)
     extent = np.where(extent > 0, extent, single)
-    stations = evenly_spaced((known - ideal) / extent)
-    return Scale(ideal, ideal + extent, stations, whole=CORNER ** known.shape[1])
+    scaled = (known - ideal) / extent
+    corner = [CORNER] * known.shape[1]
+    whole = whole_of(scaled) if is_line else float(moocore.hypervolume(scaled, ref=corner))
+    return Scale(ideal, ideal + extent, evenly_spaced(scaled), whole)
 
 
 class _Cloud(NamedTuple):

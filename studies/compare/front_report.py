@@ -7,12 +7,20 @@ from functools import partial
 
 import pandas as pd
 
-from quietarm.metaheuristics.score import BETWEEN, known_indicators
+from quietarm.metaheuristics.score import (
+    BETWEEN,
+    GAP,
+    HYPERVOLUME,
+    Indicator,
+    gap,
+    known_indicators,
+)
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.ocp.figures import Figure, further_figures
 from quietarm.ocp.limits import FRONT
 from quietarm.ocp.objectives import objectives_on
+from quietarm.studies.compare.compare_sentences import answer_of_fronts
 from quietarm.studies.compare.front_comparison import (
     Comparison,
     RunsOfMethod,
@@ -89,7 +97,7 @@ def methods_table(comparison: Comparison) -> pd.DataFrame:
 def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
     tip_unit = comparison.task.plant.tip_unit
     energies = {
-        f"F2 [J] within {tip_words(level, tip_unit)}": spread_words(
+        f"energy [J] within {tip_words(level, tip_unit)}": spread_words(
             group.spread("energies", i), ".4g"
         )
         for i, level in enumerate(comparison.levels)
@@ -97,10 +105,8 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
     # as found, points of the gradient would lose by steps that its line has not
     hidden = group.by_gradient and not comparison.fill
     measures = {
-        indicator.label: None
-        if hidden
-        else spread_words(group.spread("scores", name), indicator.form)
-        for name, indicator in known_indicators().items()
+        heading_of(indicator): None if hidden else _measured(group, indicator)
+        for indicator in known_indicators().values()
     }
     front = group.runs[0].front
     figures = {
@@ -122,6 +128,19 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
         "iterations": group.spread("front.record.iterations").median or None,
         "time [s]": group.spread("front.record.seconds").median,
     }
+
+
+def heading_of(indicator: Indicator) -> str:
+    """Return the heading of an indicator; of the hypervolume it is the gap that is shown."""
+    return GAP if indicator is HYPERVOLUME else indicator.label
+
+
+def _measured(group: RunsOfMethod, indicator: Indicator) -> str:
+    """Return the spread over runs of an indicator, of the hypervolume that of its gap."""
+    if indicator is HYPERVOLUME:
+        gaps = [gap(run.scores[HYPERVOLUME.name]) for run in group.runs]
+        return spread_words(Spread.of(gaps), ".2g")
+    return spread_words(group.spread("scores", indicator.name), indicator.form)
 
 
 def _spread_of(group: RunsOfMethod, figure: Figure, level: float) -> str:
@@ -197,6 +216,7 @@ def fronts_report(
             "fill": BETWEEN if comparisons[0].fill else 0,
             "apart": _apart_by_window(comparisons),
             "indicators": known_indicators(),
+            "heading_of": heading_of,
             "several": any(
                 len(group.runs) > 1 for comparison in comparisons for group in comparison.groups
             ),
@@ -214,4 +234,13 @@ def fronts_report(
             name: partial(pictures.comparison_figure, comparison, points)
             for name, comparison, points in zip(names, comparisons, known)
         },
+        answer=_answer(comparisons),
     )
+
+
+def _answer(comparisons: Sequence[Comparison]) -> str:
+    """Return who takes least energy; of several moves a sentence each."""
+    if len(comparisons) == 1:
+        return answer_of_fronts(comparisons[0])
+    sentences = (f"{title_of(one.task)}: {answer_of_fronts(one)}" for one in comparisons)
+    return " ".join(sentences)

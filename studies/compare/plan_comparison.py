@@ -38,6 +38,7 @@ from quietarm.studies.compare.baselines import (
     fastest_baseline,
     meaning_of_baseline,
 )
+from quietarm.studies.compare.compare_sentences import answer_by_residual
 from quietarm.studies.compare.compared_motions import (
     SAMPLES,
     ComparedMotion,
@@ -290,7 +291,6 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
         "studies/compare/plans.md",
         {
             "title": title_of(task),
-            "answer": answer_of(motions, plant) if acting else "",
             "acting": acting_table(motions, plant) if acting else None,
             "band": acting and tip_words(acting.band, plant.tip_unit),
             "within": acting and ranges_words(acting.ranges),
@@ -315,6 +315,7 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
         },
         {"motions": table},
         {"motions.png": partial(_picture, task, motions)},
+        answer=answer_of(motions, plant) if acting else answer_by_residual(motions),
     )
 
 

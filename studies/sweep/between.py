@@ -18,6 +18,7 @@ from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.profiles.joint_profile import JointProfile
+from quietarm.ocp.rest import REST
 from quietarm.ocp.simulation.evaluator import Evaluator
 from quietarm.ocp.solvers.problem import first_steps
 from quietarm.ocp.task import OF_MOVES
@@ -65,9 +66,12 @@ class Between:
         """All of it in a line."""
         broken = f"limits broken by up to {self.of_limits - 1:.1%}"
         more = f"{self.excess:.2%} more" if self.excess else "no more"
+        residual = tip_words(self.residual, self.tip_unit)
+        if self.residual < REST:
+            residual = f"below {tip_words(REST, self.tip_unit)}"
         return ", ".join(
             [
-                f"between the cells: residual {tip_words(self.residual, self.tip_unit)}",
+                f"between the cells: residual {residual}",
                 f"{more} energy than the cells around the move",
                 *(["limits kept" if self.keeps_limits else broken] if self.of_limits else []),
                 f"each the largest of {self.samples} random moves",

@@ -80,7 +80,9 @@ def _plan_checked(definition: Definition, tasks: list[PointToPoint], seed: int) 
         cold=True,
     )["energy"].to_numpy()
     if (cells["energy"].to_numpy()[checked] > (1 + tolerated) * cold).any():
-        cold_cells = plan_cells(definition, tasks, cold=True)
+        # what has no plan was tried from all cold starts already
+        cold_cells = plan_cells(definition, [tasks[k] for k in solved], cold=True)
+        cold_cells = cold_cells.set_axis(solved).reindex(cells.index)
         cheaper = cold_cells["energy"] < cells["energy"].fillna(np.inf)
         both = cells.columns.union(cold_cells.columns, sort=False)
         cells = cells.reindex(columns=both).mask(cheaper, cold_cells.reindex(columns=both))

@@ -7,13 +7,21 @@ import numpy as np
 from quietarm.ocp import SolveStatus
 from quietarm.ocp.rest import is_at_rest
 from quietarm.studies.sweep.definition import JUMP, STATES, STATUS
+from quietarm.studies.sweep.move_grid import Axis
 from quietarm.studies.sweep.store import Store
-from quietarm.views.report.words import moved, residual_place
-from quietarm.views.tips import tip_scale, tip_words
+from quietarm.views.report.captions import caption_of_cells
+from quietarm.views.report.words import counted, moved, residual_place, residual_words
+from quietarm.views.tips import tip_scale
 
 
-def sweep_rows(store: Store) -> list[tuple[str, str]]:
-    """Axes, then how many cells ended how."""
+def sweep_answer(store: Store) -> str:
+    """Return how many moves of a grid have a plan, and what these take and leave."""
+    task = store.definition.grid.task
+    return f"{caption_of_cells(store.read('energy'), store.read('residual'), task)}."
+
+
+def sweep_rows(store: Store, *, verbose: bool = False) -> list[tuple[str, str]]:
+    """Return the axes, how many cells ended how, and what a check from cold starts found."""
     grid = store.definition.grid
     status = store.read(STATUS)
     energy = store.read("energy")
@@ -21,33 +29,51 @@ def sweep_rows(store: Store) -> list[tuple[str, str]]:
     rows += [
         (
             axis.name,
-            f"{len(axis.values)} from {axis.values[0]:.6g} to {axis.values[-1]:.6g} {axis.unit}",
+            f"{len(axis.values)} from {values[0]:.4g} to {values[-1]:.4g} {unit}",
         )
         for axis in grid.axes
+        for unit, values in [_shown_values(axis)]
     ]
     known = np.isfinite(energy)
-    solved = f"{known.sum()} of {grid.cells}"
-    rows.append(("moves", f"{solved} have a plan, in {store.path}"))
+    rows.append(("dataset", str(store.path)))
     solved_states = (SolveStatus.OPTIMAL.value, SolveStatus.ACCEPTABLE.value)
     counts = [(state, int((status == k).sum())) for k, state in enumerate(STATES)]
     unsolved = [count for count in counts if count[0] not in solved_states]
-    rows += [(state, f"{count} cells") for state, count in unsolved if count]
+    rows += [(state, counted(count, "move")) for state, count in unsolved if count]
     if known.any():
-        excess = store.read("cold_excess")
         jumps = int((store.read(JUMP) > 0).sum())
-        checked = np.isfinite(excess)
-        largest = store.read("residual")[known].max()
-        tip_unit = grid.task.plant.tip_unit
+        largest = residual_words(float(store.read("residual")[known].max()), grid.task)
+        largest = f"at {largest}" if largest == "rest" else f"at most {largest}"
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
-            ("residual", f"{tip_words(largest, tip_unit)} at most {residual_place(grid.task)}, "
-             "by CVODES"),
-            ("from cold starts", f"at most {max(excess[checked].max(), 0):.1g} of the energy less, "
-             f"in {checked.sum()} cells"),
-        ]  # fmt: skip
+            ("residual", f"{largest} {residual_place(grid.task)}, by CVODES"),
+        ]
         rows += figure_spans(store)
-        rows += [("jumps", f"after {jumps} cells, to another motion")] * bool(jumps)
+        rows += [("cold starts", _cold_words(store, verbose))]
+        rows += [("jumps", f"to another kind of motion, {counted(jumps, 'time')}")] * bool(jumps)
     return rows
+
+
+def _cold_words(store: Store, verbose: bool) -> str:
+    """Return whether moves that were solved afresh, not from neighbours, got better plans."""
+    excess = store.read("cold_excess")
+    checked = excess[np.isfinite(excess)]
+    most = float(checked.max(initial=0.0))
+    detail = f" (at most {most:.1g} of the energy less)" if verbose else ""
+    if most <= _BETTER:
+        return f"found no better plan for {counted(len(checked), 'move')}{detail}"
+    return f"found up to {most:.2%} less energy, {counted(len(checked), 'move')} checked"
+
+
+_BETTER = 1e-4
+"""Share of the energy from which on a plan from a cold start counts as better."""
+
+
+def _shown_values(axis: Axis) -> tuple[str, list[float]]:
+    """Return the unit and values of an axis as they are shown: angles in degrees."""
+    if axis.unit == "rad":
+        return "deg", np.degrees(axis.values).tolist()
+    return axis.unit, list(axis.values)
 
 
 def figure_spans(store: Store) -> list[tuple[str, str]]:
@@ -88,8 +114,9 @@ def cells_along(store: Store) -> list[str]:
         ]
         for figure in store.figures
     }
+    unit, values = _shown_values(axis)
     cells = {
-        f"{axis.name} [{axis.unit}]": [f"{value:.6g}" for value in axis.values],
+        f"{axis.name} [{unit}]": [f"{value:.4g}" for value in values],
         "energy [J]": np.where(known, [f"{value:.4g}" for value in energy.tolist()], "-"),
         f"residual [{shown}]": np.where(known, residuals, "-"),
         **figures,

@@ -190,7 +190,7 @@ def _key(question: Question) -> str:
 def _rows(asked: MoveByHand) -> list[list[str]]:
     """The figures of `quietarm plan`, in the words of the page."""
     remedies = dict.fromkeys(HARD_REMEDIES, "enter what the drive can do under Limits")
-    rows = dict(plan_rows(asked.motion, remedies))
+    rows = dict(plan_rows(asked.motion, remedies, verbose=True))
     rows["computed in"] = rows.pop("time")
     if asked.is_of_front:
         rows["status"] = "a point of the front"

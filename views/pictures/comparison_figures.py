@@ -156,7 +156,8 @@ def draw_comparison(
     if comparison.floor is not None:
         _draw_floor(ax, comparison, scale * _left(comparison) if small else 0.0)
     if not small:
-        mark_points(ax, comparison.best_front, comparison.task)
+        corner = comparison.runs[0].front.reference
+        mark_points(ax, comparison.best_front, comparison.task, corner)
     highest = max(
         [tallest * comparison.best_front[0, 1], *(1.05 * point.energy for point in known)]
     )

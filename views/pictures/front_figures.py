@@ -264,9 +264,9 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
     tip_unit = fronts[0].task.plant.tip_unit
     name_objectives(axes[0], tip_unit, fronts[0].task.residual_window)
     if len(fronts) == 1:
-        mark_points(
-            axes[0], np.column_stack([fronts[0].residuals, fronts[0].energies]), fronts[0].task
-        )
+        front = fronts[0]
+        points = np.column_stack([front.residuals, front.energies])
+        mark_points(axes[0], points, front.task, front.reference)
         axes[0].legend(fontsize=8)
     for draw, ax in zip((draw_hypervolume, draw_seed_energies), axes[1:]):
         draw(fronts, ax)

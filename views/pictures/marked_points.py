@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
@@ -16,11 +18,11 @@ from quietarm.views.tips import tip_scale, tip_words
 Array = NDArray[np.float64]
 
 
-def mark_points(ax: Axes, front: Array, task: PointToPoint) -> None:
+def mark_points(ax: Axes, front: Array, task: PointToPoint, corner: Sequence[float]) -> None:
     """Mark and name points of a front, shape (n, 2): residuals [tip's unit], rising, energies [J].
 
     The stillest, the cheapest, the knee if the front bends, and what 1 mm allows, each with its
-    figures in the legend.
+    figures in the legend. The knee is by shares of the `corner`, a front's `reference`.
     """
     if not len(front):
         return
@@ -28,8 +30,9 @@ def mark_points(ax: Axes, front: Array, task: PointToPoint) -> None:
     named = {"stillest": ("<", front[0])}
     if len(front) > 1:
         named["cheapest"] = (">", front[-1])
-    if has_knee(front):
-        named["knee"] = ("o", front[knee_of(front)])
+    of_both = corner[: front.shape[1]]
+    if has_knee(front, of_both):
+        named["knee"] = ("o", front[knee_of(front, of_both)])
     if front[0, 0] < SEARCH_RESIDUAL < front[-1, 0]:
         energy = float(np.interp(SEARCH_RESIDUAL, front[:, 0], front[:, 1]))
         named[tip_words(SEARCH_RESIDUAL, tip_unit)] = ("|", np.array([SEARCH_RESIDUAL, energy]))

@@ -41,10 +41,10 @@ def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
     for name, judged in known.items():
         assert judged.motion is not None
         residuals.append(judged.motion.residual)
-        words = _left(judged.motion.residual, judged.task)
+        words = left_words(judged.motion.residual, judged.task)
         if judged.worst is not None:
             residuals.append(judged.worst.residual)
-            words = f"{_left(judged.worst.residual, judged.task)} in the worst case"
+            words = f"{left_words(judged.worst.residual, judged.task)} in the worst case"
         if judged.motion.candidate is not None:
             words = ", ".join([words, *further_words(judged.motion.candidate, CAPTION)])
         said[name] = judged.motion.energy, words
@@ -94,14 +94,15 @@ def _ending(motion: Plan | Floor) -> str:
     """How a motion ends: at rest, or what it leaves, of a robust plan in the worst case."""
     task = motion.task
     if isinstance(motion, Plan) and motion.worst is not None:
-        worst = _left(motion.worst.residual, task)
+        worst = left_words(motion.worst.residual, task)
         return f"{worst} with {error_words(task)}"
     if is_at_rest(motion.residual, task) and task.final:
         return "arrives in the state that is wanted"
-    return _left(motion.residual, task)
+    return left_words(motion.residual, task)
 
 
-def _left(residual: float, task: PointToPoint) -> str:
+def left_words(residual: float, task: PointToPoint) -> str:
+    """Return what a residual means: "arrives at rest", or "leaves 5 mm"."""
     if is_at_rest(residual, task):
         return "arrives at rest"
     return f"leaves {tip_words(residual, task.plant.tip_unit)}"

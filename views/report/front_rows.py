@@ -10,12 +10,13 @@ import numpy as np
 from quietarm.metaheuristics.evaluation.noise import belief_of
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, energies_at, hypervolumes
 from quietarm.ocp import CrossCheck, FailedPoint, Front, FrontPoint, Gain, PointToPoint
-from quietarm.ocp.front.points import LEVELS, has_knee
+from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import FRONT, QUANTITIES
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.robustness import worst_of
+from quietarm.views.report.captions import caption_of_front, caption_of_fronts
 from quietarm.views.report.plan_rows import worst_in_words
 from quietarm.views.report.words import (
     counted,
@@ -34,9 +35,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
     record = front.record
     tip_unit = front.task.plant.tip_unit
     return [
+        f"{caption_of_front(front)}.",
         *energy_words(front.task),
-        f"{record.method}: {counted(len(front.points), 'point')}, "
-        f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
         *_chosen_points(front),
         *(
             f"  {f'within {tip_words(level, tip_unit)}':14} {_within(front, level)}"
@@ -53,6 +53,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
             f"{tip_words(end, tip_unit)}: the front is not convex there"
             for begin, end in front.gaps
         ),
+        f"{record.method}: {counted(len(front.points), 'point')}, "
+        f"{counted(record.iterations, 'iteration')} of the solver in {record.seconds:.1f} s",
     ]  # fmt: skip
 
 
@@ -66,32 +68,33 @@ def _within(front: Front, level: float) -> str:
 
 def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str]:
     """Fronts of searches or tables, and the spread over several seeds."""
-    lines = energy_words(fronts[0].task)
-    tip_unit = fronts[0].task.plant.tip_unit
-    for front in fronts:
-        record = front.record
-        seed = "" if record.seed is None else f", seed {record.seed}"
-        lines += [
-            f"{record.method}{seed}: {counted(len(front.points), 'point')}, "
-            f"{counted(record.evaluations, 'candidate')} in {record.seconds:.1f} s, "
-            f"{front.failed} failed",
-            *_chosen_points(front),
-            *_noise_lines(front),
-        ]
-    lines += [_residual_line(fronts[0].task), *_band_lines(fronts[0].task)]
+    task = fronts[0].task
+    lines = [f"{caption_of_fronts(fronts)}.", *energy_words(task)]
     if len(fronts) > 1:
         energies = energies_at(fronts)
-        level = tip_words(SEARCH_RESIDUAL, tip_unit)
-        corner = values_words(
-            objectives_on(fronts[0].task.plant, fronts[0].objectives), fronts[0].reference
-        )
+        level = tip_words(SEARCH_RESIDUAL, task.plant.tip_unit)
+        corner = values_words(objectives_on(task.plant, fronts[0].objectives), fronts[0].reference)
         lines += [
+            f"energy within {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles)",
             f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to {corner}, "
             "median (quartiles)",
-            f"energy at {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles); "
-            f"{energies.count} of {energies.seeds} seeds reach {level}",
         ]
-    return [*lines, *notes]
+    for front in fronts:
+        points = [*_chosen_points(front), *_noise_lines(front)]
+        how = [_found_line(front)]
+        lines += points + how if len(fronts) == 1 else how + points
+    return [*lines, _residual_line(task), *_band_lines(task), *notes]
+
+
+def _found_line(front: Front) -> str:
+    """Return how a search found a front: method, seed, candidates and time."""
+    record = front.record
+    seed = "" if record.seed is None else f", seed {record.seed}"
+    failed = f", {front.failed} failed" if front.failed else ""
+    return (
+        f"{record.method}{seed}: {counted(len(front.points), 'point')}, "
+        f"{counted(record.evaluations, 'candidate')} in {record.seconds:.1f} s{failed}"
+    )
 
 
 def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[str]:
@@ -103,9 +106,8 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[s
     dominated = len(given.points) - len(polished.points)
     shown = np.linspace(0, len(gains) - 1, min(rows, len(gains))).round().astype(int)
     return [
-        f"{polished.record.method}: {counted(len(given.points), 'point')}, "
-        f"{polished.record.iterations - given.record.iterations} iterations of the solver in "
-        f"{polished.record.seconds - given.record.seconds:.1f} s",
+        f"Polishing saves {shares.max():.2%} of the energy of a point at most, "
+        f"{np.median(shares):.2%} in the median.",
         f"{'residual':>12}{'before':>12}{'after':>12}{'saved':>9}",
         *(
             f"{tip_words(gain.residual, tip_unit):>12}{f'{gain.before:.4g} J':>12}"
@@ -114,9 +116,11 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[s
         ),
         *_chosen_points(polished),
         _residual_line(polished.task),
-        f"saved: median {np.median(shares):.2%}, least {shares.min():.2%}, most {shares.max():.2%}",
         *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
         *failure_lines(polished, len(given.points)),
+        f"{polished.record.method}: {counted(len(given.points), 'point')}, "
+        f"{polished.record.iterations - given.record.iterations} iterations of the solver in "
+        f"{polished.record.seconds - given.record.seconds:.1f} s",
     ]  # fmt: skip
 
 
@@ -160,13 +164,12 @@ def _chosen_points(front: Front) -> list[str]:
         quantity = objective.quantity
         least = min(front.points, key=lambda point, name=quantity: point.peaks[name])
         chosen[f"least {QUANTITIES[quantity].words.of(front.task.plant.joint)}"] = least
-    bends = has_knee(front.objective_values)
-    if not bends:
+    if not front.has_knee:
         del chosen["knee"]
     width = max(15, *(len(name) + 1 for name in chosen))
     lines = [f"  {name:{width}}{_point_in_words(front, point)}" for name, point in chosen.items()]
-    if not bends and len(front.points) > 2:
-        lines.insert(1, f"  {'knee':{width}}none, the front is nearly straight")
+    if not front.has_knee and len(front.points) > 2:
+        lines.insert(1, f"  {'knee':{width}}none between the ends")
     return lines
 
 

@@ -68,7 +68,7 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
     if not learned.is_done:
         more = 100 * (learned.plan.energy / plan.energy - 1)
         rows.append(("step", f"{learned.step:.0%} of the correction"))
-        rows.append(("energy (F2)", f"{learned.plan.energy:.6g} J ({more:+.1f} %)"))
+        rows.append(("energy", f"{learned.plan.energy:.4g} J ({more:+.1f} %)"))
     return rows
 
 

@@ -7,10 +7,11 @@ from math import floor, log10, pi
 from typing import Any
 
 from quietarm.machine.identify import Estimate, Identified, Part, Prediction
-from quietarm.machine.identify.identified import is_modal
+from quietarm.machine.identify.identified import is_frequency, is_modal
 from quietarm.models import Plant, file_of_plant
 from quietarm.models.plant import FREQUENCY
-from quietarm.views.report.words import span_words
+from quietarm.ocp.checks import joined
+from quietarm.views.report.words import counted, span_words
 
 Row = tuple[str, str]
 
@@ -21,11 +22,10 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     `given` are those that the user gave.
     """
     rows = [("plant", machine.plant.name)]
-    rows += [
-        (estimate.parameter, text)
-        for estimate in machine.estimates
-        for text in _estimate(machine.plant, estimate)
-    ]
+    for estimate in machine.estimates:
+        mean, *next_swing = _estimate(machine.plant, estimate)
+        rows.append((_called(machine.plant, estimate.parameter), mean))
+        rows += [("  next swing", text) for text in next_swing]
     rows += [
         (name, f"not identifiable: {why}; {_instead(machine, name, given)}")
         for name, why in machine.not_identifiable.items()
@@ -37,8 +37,38 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     }.items():
         if names:
             rows.append((words, ", ".join(_with_unit(machine.plant, name) for name in names)))
-    rows += [(part.recording, _part(machine.plant, part)) for part in machine.parts]
+    several = len(machine.parts) > 1
+    rows += [
+        (part.recording, _part(machine.plant, part, with_values=several)) for part in machine.parts
+    ]
     return rows + [(name, f"left out: {why}") for name, why in machine.left_out.items()]
+
+
+def machine_answer(machine: Identified) -> str:
+    """Return at which frequencies a machine swings, and how well they are known."""
+    found = [one for one in machine.estimates if is_frequency(machine.plant, one.parameter)]
+    by = f"by {counted(len(machine.parts), 'ring-down')}"
+    if not found:
+        names = joined([estimate.parameter for estimate in machine.estimates])
+        return f"The recordings tell {names}, {by}." if names else "The recordings tell nothing."
+    words = [
+        f"{one.value / (2 * pi):.4g} Hz (+-{50 * (one.high - one.low) / one.value:.2g} %)"
+        for one in found
+    ]
+    return f"The machine swings at {joined(words)}, {by}."
+
+
+def prediction_answer(plant: Plant, predictions: Sequence[Prediction]) -> str:
+    """Return how much of the swing a machine predicts, of its worst ring-down."""
+    worst = min(predictions, key=lambda prediction: prediction.share)
+    return f"{plant.name} predicts {worst.share:.1%} of the swing over five periods" + (
+        f", in the worst of {len(predictions)} ring-downs." if len(predictions) > 1 else "."
+    )
+
+
+def _called(plant: Plant, name: str) -> str:
+    """Return a parameter's name; of a frequency, which is shown in Hz, with that word."""
+    return f"frequency {name}" if is_frequency(plant, name) else name
 
 
 def _instead(machine: Identified, name: str, given: Collection[str]) -> str:
@@ -100,9 +130,7 @@ def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = (
 
     `given` are the parameters that the user gave.
     """
-    notes = [
-        "Misfit: root mean square of the residuals, as a share of the swing's; likewise the noise."
-    ]
+    notes = list[str]()
     untold = [name for name in machine.untold if name not in given]
     if untold:
         notes.append(
@@ -156,21 +184,23 @@ def _by_amplitude(machine: Identified, name: str) -> str:
     return f", and {'grows' if rank > 0 else 'falls'} with the amplitude"
 
 
-def _part(plant: Plant, part: Part) -> str:
+def _part(plant: Plant, part: Part, *, with_values: bool) -> str:
+    """Return the span of a ring-down, its values, and the root mean square of what is misfit."""
     hub = {
         "": "",
         "creeps": ", with the hub's motion",
         "moves": ", all of the hub's motion with it",
     }
-    values = ", ".join(_short(plant, name, value) for name, value in part.values.items())
-    misfit = f"misfit {part.misfit:.1%}, noise {part.noise:.1%}"
+    values = [_short(plant, name, value) for name, value in part.values.items()]
+    fit = f"misfit {part.misfit:.1%}, noise {part.noise:.1%} of the swing"
+    told = ", ".join([*(values if with_values else []), fit])
     saturated = f"; {part.saturated} saturated samples excluded" if part.saturated else ""
     drift = "; a slow drift excluded" if part.drifts else ""
     small = ""
     if part.largest:
         small = f"; fitted from an amplitude of {part.amplitude:.3g} on, of {part.largest:.3g}"
     span = span_words(part.begin, part.end)
-    return f"{span}: {values}, {misfit}{hub[part.hub]}{saturated}{drift}{small}"
+    return f"{span}: {told}{hub[part.hub]}{saturated}{drift}{small}"
 
 
 def _short(plant: Plant, name: str, value: float) -> str:
@@ -203,5 +233,5 @@ def _estimate(plant: Plant, estimate: Estimate) -> list[str]:
     lines = [f"{text(estimate.value)}{words}, within {ends}{words} (95 %)"]
     if estimate.next_low is not None and estimate.next_high is not None:
         ends = f"{text(estimate.next_low)} to {text(estimate.next_high)}"
-        lines.append(f"of the next swing within {ends}{words} (95 %)")
+        lines.append(f"within {ends}{words} (95 %)")
     return lines

@@ -18,6 +18,7 @@ from quietarm.ocp import (
     PointToPoint,
     ShapedCycloid,
 )
+from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
 from quietarm.ocp.joint_words import figure_words
 from quietarm.ocp.judged_motion import JudgedMotion
@@ -28,6 +29,7 @@ from quietarm.ocp.planning.default_jerk import rise_time
 from quietarm.ocp.planning.plan_along import EXCESS
 from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.rest import is_at_rest, rest_of
+from quietarm.ocp.robustness import OF_MODES
 from quietarm.views.report.drive_rows import cycle_rows, drive_rows
 from quietarm.views.report.robot_rows import way_rows
 from quietarm.views.report.words import (
@@ -56,46 +58,63 @@ _HARD = 5
 _FAR = 0.1
 """A limit that a motion does not come to this share of does not act, and silences no warning."""
 _SEEN = 1e-6
+_SECOND = "by a second integrator (CVODES)"
 _ROUNDING = 1e-9
 """A joint passes its target where it does so by more [rad, m]; less is a rounding error."""
 
 
-def plan_rows(plan: Plan, remedies: Mapping[str, str] = HARD_REMEDIES) -> list[Row]:
-    """A plan's coefficients, figures and verification; and remedies where it is too hard."""
+def plan_rows(
+    plan: Plan,
+    remedies: Mapping[str, str] = HARD_REMEDIES,
+    *,
+    verbose: bool = False,
+    off: str = "",
+) -> list[Row]:
+    """Return a plan's limits and figures, how sure they are, how it was found, its coefficients.
+
+    `verbose` adds how the solver ended and by how much the two integrators differ; `remedies` are
+    named where a motion is too hard for a drive; `off` says what is left off the model.
+    """
     back = plan.turns_back
+    worst = [] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]
     return [
         *_move_rows(plan.task, plan.motion, plan.residual_limit or 0.0),
-        *_arrival_rows(plan),
-        _choice(plan),
-        *_terms_rows(plan),
         *_figure_rows(plan.task, plan.candidate, remedies),
         *note_rows(plan.task.plant),
         *([("turns back", f"by {_way(back, plan.task)} on the way")] if back > _SEEN else []),
-        *([] if plan.worst is None else [("worst case", _worst_of_plan(plan, plan.worst))]),
-        ("status", plan.status.text),
-        _verified_row(plan),
+        *worst,
+        *_off_rows(off),
         *_full_rows(plan),
         *drive_rows(plan),
         *cycle_rows(plan),
-        ("time", f"{plan.record.seconds:.2f} s"),
+        _verified_row(plan, verbose),
+        *_status_rows(plan.status, verbose),
+        *_terms_rows(plan),
+        ("time", f"{plan.record.seconds:.3g} s"),
+        _choice(plan),
     ]
 
 
-def _arrival_rows(plan: Plan) -> list[Row]:
-    """What a robust plan may leave, said first: it does not arrive at rest."""
-    if plan.worst is None or is_at_rest(plan.worst.residual, plan.task):
-        return []
-    residual = _tip(plan.task, plan.worst.residual)
-    return [("arrives", f"not at rest: with such errors up to {residual} of vibration are left")]
+def _off_rows(words: str) -> list[Row]:
+    """Return what is left if the plant is off its model, where that is known."""
+    return [("off the model", words)] if words else []
 
 
-def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
-    """The motion without a profile that takes least energy, beside a plan of the same move."""
+def _status_rows(status: SolveStatus, verbose: bool) -> list[Row]:
+    """Return how a solve ended; the two usual ends only where all is asked for."""
+    usual = (SolveStatus.OPTIMAL, SolveStatus.NOT_OPTIMISED)
+    return [("status", status.text)] if verbose or status not in usual else []
+
+
+def floor_rows(
+    floor: Floor, plan: Plan | None, *, verbose: bool = False, off: str = ""
+) -> list[Row]:
+    """Return the motion without a profile that takes least energy, beside a plan of the move."""
     motion = floor.motion
     check = floor.verification
     beside = "none within these limits"
     if plan is not None:
-        beside = f"{plan.energy:.6g} J, {plan.energy / floor.energy:.3g} times as much"
+        beside = f"{plan.energy:.4g} J, {plan.energy / floor.energy:.3g} times as much"
     worst = max(floor.starts) / min(floor.starts) - 1
     missing = int(floor.record.settings["starts"] or 0) - len(floor.starts)
     starts = [
@@ -103,24 +122,24 @@ def floor_rows(floor: Floor, plan: Plan | None) -> list[Row]:
         *([f"the worst is {worst:.1%} above it"] if worst > 0.005 else []),
         *([f"{missing} failed"] if missing > 0 else []),
     ]
-    unsettled = "" if floor.settled else " On a finer grid it failed."
+    unsettled = "" if floor.settled else "; on a finer one it failed"
     error = floor.discretisation_error
+    share = abs(check.energy_difference) / motion.energy
+    differ = f"{check.steps} intervals differ by {share:.0e} of the energy"
+    levels = ", ".join(f"{level.steps}: {level.energy:.4g} J" for level in floor.levels)
     return [
         *_move_rows(floor.task, motion),
-        ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
         *_figure_rows(floor.task, floor.candidate, _OF_ACCELERATION),
         *note_rows(floor.task.plant),
-        ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%})"),
-        ("intervals", ", ".join(f"{level.steps}: {level.energy:.6g} J" for level in floor.levels)),
-        ("starts", ", ".join(starts)),
+        *_off_rows(off),
         (f"{_size(plan)} terms", beside),
-        ("status", floor.status.text + unsettled),
-        (
-            "verified",
-            f"by CVODES, restarted at every jump: {check.steps} intervals differ by "
-            f"{abs(check.energy_difference) / motion.energy:.0e} of the energy",
-        ),
-        ("time", f"{floor.record.seconds:.2f} s"),
+        ("finer grids", f"would save about {error:.2g} J ({error / floor.energy:.2%}){unsettled}"),
+        ("verified", _SECOND + f", restarted at every jump: {differ}" * verbose),
+        *_status_rows(floor.status, verbose),
+        ("starts", ", ".join(starts)),
+        *([("intervals", levels)] if verbose else []),
+        ("time", f"{floor.record.seconds:.3g} s"),
+        ("profile", "none: the jerk is free" if floor.smooth else "none: the acceleration is free"),
     ]
 
 
@@ -151,14 +170,24 @@ def path_rows(candidate: JudgedMotion, path: RecordedPath) -> list[Row]:
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
-    """What a parameter that is 1 % larger adds to residual and energy."""
-    return [
-        (
-            change.parameter,
-            f"{_tip(plan.task, change.residual / 100)}, {change.energy / plan.energy:+.3g} %",
+    """Return what a parameter that is 1 % larger adds to residual and energy.
+
+    The frequency and the damping of a plant of one mode are one row with its own parameter.
+    """
+    said = {
+        change.parameter: (
+            f"{_tip(plan.task, change.residual / 100)}, {change.energy / plan.energy:+.3g} %"
         )
         for change in plan.sensitivities
-    ]
+    }
+    rows = list[Row]()
+    for name, words in said.items():
+        twins = [other for other in said if other != name and said[other] == words]
+        of_mode = [other for other in twins if other in OF_MODES]
+        if name in OF_MODES and not {*twins} <= {*OF_MODES}:
+            continue
+        rows.append((f"{name} ({of_mode[0]})" if of_mode else name, words))
+    return rows
 
 
 def worst_in_words(worst: JudgedMotion, tip_unit: str) -> str:
@@ -186,13 +215,13 @@ def _worst_of_plan(plan: Plan, worst: JudgedMotion) -> str:
     return words
 
 
-def _verified_row(plan: Plan) -> Row:
-    """How far the two integrators agree; the word `verified` only where that is near enough."""
+def _verified_row(plan: Plan, verbose: bool) -> Row:
+    """Return how far the two integrators agree; the word `verified` only where they do."""
     check = plan.verification
     residual = _tip(plan.task, abs(check.residual_difference))
     differ = f"{check.energy_share:.0e} of the energy and {residual}"
     if check.agrees:
-        return "verified", f"by CVODES, within {differ}"
+        return "verified", _SECOND + f", within {differ}" * verbose
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
         f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
@@ -213,8 +242,8 @@ def _full_rows(plan: Plan) -> list[Row]:
     return [
         (
             "in full",
-            f"{figures.energy:.6g} J ({share:.0e} from F2) and {residual} left, by CVODES on the "
-            f"whole equations, without modes and tables{remedy}",
+            f"{figures.energy:.4g} J ({share:.0e} from the energy above) and {residual} left, by "
+            f"CVODES on the whole equations, without modes and tables{remedy}",
         )
     ]
 
@@ -256,11 +285,11 @@ def _figure_rows(
     if is_at_rest(motion.residual, task):
         where = "as wanted" if task.final else "at rest"
         residual = f"{where} (below {_tip(task, rest_of(task))})"
-    energy = f"{motion.energy:.6g} J  (net work {motion.net_work:.4g} J)"
+    energy = f"{motion.energy:.4g} J  (net work {motion.net_work:.4g} J)"
     rows = {
-        ENERGY: ("energy (F2)", f"{energy}{_warnings(task, ENERGY)}"),
+        ENERGY: ("energy", f"{energy}{_warnings(task, ENERGY)}"),
         RESIDUAL: (
-            "residual (F1)",
+            "residual",
             f"{residual} {residual_place(task)}{_warnings(task, RESIDUAL)}",
         ),
     }

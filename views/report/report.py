@@ -21,7 +21,7 @@ from quietarm.ocp.escapes import (
 )
 from quietarm.ocp.files import write_whole
 from quietarm.views.report.saving import File, drawing, inside
-from quietarm.views.report.table_width import width_of_table
+from quietarm.views.report.table_width import narrow_tables
 from quietarm.views.report.templates import templates
 from quietarm.views.report.words import counted, millimetres
 
@@ -47,21 +47,28 @@ class Report:
     figures : mapping of str to callable
         Functions that draw a picture, by the name of its file; in the template
         ``![what it shows](front.png)``.
+    answer : str
+        The answer in a sentence or two: the first line on a terminal, below the title of a page.
     """
 
     template: str | Path
     values: Mapping[str, Any] = field(default_factory=dict)
     tables: Mapping[str, DataFrame] = field(default_factory=dict)
     figures: Mapping[str, Callable[[], Figure]] = field(default_factory=dict)
+    answer: str = ""
 
-    def markdown(self) -> str:
-        """The text, whose pictures lie beside it."""
+    def markdown(self, *, with_answer: bool = True) -> str:
+        """Return the text, whose pictures lie beside it; the answer stands below the title."""
         if isinstance(self.template, Path):
             template = _environment().from_string(self.template.read_text(encoding="utf-8"))
         else:
             template = _environment().get_template(self.template)
         rendered = template.render(**self.values, tables=self.tables)
-        return re.sub(r"\n{3,}", "\n\n", rendered).strip() + "\n"
+        text = re.sub(r"\n{3,}", "\n\n", rendered).strip() + "\n"
+        if not (with_answer and self.answer):
+            return text
+        title, _, rest = text.partition("\n")
+        return f"{title}\n\n{markdown(self.answer)}\n{rest}"
 
     def html(self) -> str:
         """The text as a page that stands alone, with its pictures inside."""
@@ -115,23 +122,27 @@ def table_in_markdown(table: DataFrame) -> str:
     """A table in Markdown: four digits, a dash where there is no value."""
     cells = table.map(lambda cell: markdown(cell) if isinstance(cell, str) else cell)
     cells = cells.astype(object).where(table.notna(), None).rename(columns=markdown)
+    for place, name in enumerate(cells.columns):
+        cells.isetitem(place, _whole_numbers(cells[name]))
     return Markdown(cells.to_markdown(index=False, floatfmt=".4g", missingval="-"))
+
+
+def _whole_numbers(column: Any) -> Any:
+    """Return a column of numbers as whole ones if all are: 40000, not 4e+04."""
+    import pandas as pd  # not at the top: it takes long to load
+
+    known = column[column.notna()]
+    if not all(isinstance(cell, float) and cell.is_integer() for cell in known):
+        return column
+    values = [None if cell is None else int(cell) for cell in column]
+    return pd.Series(values, index=column.index, dtype=object)
 
 
 def tables_in_markdown(table: DataFrame, width: int = 100) -> str:
     """A table as several below each other that fit into a width, each with the first column."""
     if len(table.columns) < 2:
         return ""
-    first, *columns = map(str, table.columns)
-    parts = list[list[str]]()
-    for column in columns:
-        wider = [*(parts[-1] if parts else []), column]
-        if parts and width_of_table(table_in_markdown(table.filter([first, *wider]))) <= width:
-            parts[-1] = wider
-        else:
-            parts.append([column])
-    texts = (table_in_markdown(table.filter([first, *part])) for part in parts)
-    return Markdown("\n\n".join(texts))
+    return Markdown("\n".join(narrow_tables(table_in_markdown(table).splitlines(), width)))
 
 
 def turned(table: DataFrame, names: str) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -11,17 +13,24 @@ from rich.table import Table
 from rich.text import Text
 
 from quietarm.ocp.escapes import one_line, printable
-from quietarm.views.report.table_width import width_of_table
+from quietarm.views.report.table_width import narrow_tables
 
 if TYPE_CHECKING:
     from quietarm.views.report.report import Report
 
+LEAST_WIDTH = 100
+"""Columns that a sentence may take, however narrow the console."""
+
 
 def show_all(console: Console, *parts: Report | Sequence[tuple[str, str]] | str) -> None:
-    """Print reports, facts and lines, one below the other; empty ones are left out."""
+    """Print reports, facts and lines, one below the other; empty ones are left out.
+
+    Nothing is wider than the console, or than a hundred columns where that is narrower, so that
+    the first line is whole: a line that would be goes on in the next one, indented.
+    """
     for part in filter(None, parts):
         if isinstance(part, str):
-            print_lines(console, part)
+            print_lines(console, *wrapped(part, max(console.width, LEAST_WIDTH)))
         elif isinstance(part, Sequence):
             show_facts(console, part)
         else:
@@ -32,6 +41,36 @@ def print_lines(console: Console, *lines: str) -> None:
     """Print lines as they are, however narrow the console; a line stays one, whatever is in it."""
     text = "\n".join(one_line(line) if line.strip() else "" for line in lines)
     console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def wrapped(line: str, width: int) -> list[str]:
+    """Return a line in pieces that fit into a width, broken between words alone."""
+    text = one_line(line) if line.strip() else ""
+    if len(text) <= width:
+        return [text]
+    indent = " " * (len(text) - len(text.lstrip(" ")))
+    return textwrap.wrap(
+        text,
+        width,
+        subsequent_indent=f"{indent}  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def in_clauses(answer: str, width: int) -> list[str]:
+    """Return an answer in lines that fit into a width, broken behind its clauses if it can be.
+
+    So the first line is whole by itself.
+    """
+    lines = [""]
+    for clause in re.split(r"(?<=;) ", one_line(answer)):
+        longer = f"{lines[-1]} {clause}".strip()
+        if lines[-1] and len(longer) > width:
+            lines.append(clause)
+        else:
+            lines[-1] = longer
+    return [piece for line in lines for piece in wrapped(line, width)]
 
 
 def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
@@ -52,20 +91,23 @@ def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
 
 
 def show(console: Console, report: Report) -> None:
-    """Print a report without its pictures; in a pipe its tables are as wide as they need."""
+    """Print a report without its pictures: the answer, then the page.
+
+    A table that is wider than the console becomes several, one below the other.
+    """
     from rich.markdown import Markdown  # not at the top: it takes long to load
 
-    text = printable(report.markdown())
+    if report.answer:
+        print_lines(console, *in_clauses(report.answer, max(console.width, LEAST_WIDTH)))
+    text = printable(report.markdown(with_answer=False))
     lines = [line for line in text.splitlines() if not line.startswith("![")]
-    if not console.is_terminal:
-        console = Console(file=console.file, width=max(console.width, _widest_table(lines)))
-    console.print(Markdown("\n".join(lines)))
+    console.print(Markdown("\n".join(_narrowed(lines, console.width))))
 
 
-def _widest_table(lines: Sequence[str]) -> int:
-    """The width of the widest table of Markdown in lines, 0 if there is none."""
-    widest = 0
+def _narrowed(lines: Sequence[str], width: int) -> list[str]:
+    """Return lines of Markdown whose tables fit into a width, as far as two columns do."""
+    narrow = list[str]()
     for is_table, rows in groupby(lines, key=lambda line: line.startswith("|")):
-        if is_table:
-            widest = max(widest, width_of_table("\n".join(rows)))
-    return widest
+        block = list(rows)
+        narrow += narrow_tables(block, width) if is_table else block
+    return narrow

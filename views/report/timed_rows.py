@@ -25,8 +25,8 @@ def timed_rows(answer: TimedAnswer) -> list[Row]:
         ("path", f"{points} points of {len(motion.joints)} joints"),
         *(("path", words) for words in motion.remarks),
         *_ends_rows(answer),
-        ("energy (F2)", f"{answer.energy:.6g} J"),
-        ("residual (F1)", f"{1e3 * answer.residual:.3g} mm at the tip"),
+        ("energy", f"{answer.energy:.4g} J"),
+        ("residual", f"{1e3 * answer.residual:.3g} mm at the tip"),
         *(_peak_row(answer, name) for name in answer.peaks),
     ]
     rows += _step_rows(answer)

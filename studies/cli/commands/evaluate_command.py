@@ -22,6 +22,7 @@ from quietarm.studies.cli.options import (
     PATH_TOLERANCE,
     SENSITIVITIES,
     TASK,
+    VERBOSE,
     busy,
     command,
     option,
@@ -44,6 +45,7 @@ from quietarm.studies.cli.quantities import (
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.acting_words import path_lines
+from quietarm.views.report.first_lines import path_answer, timed_answer
 from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.plan_rows import path_rows
 from quietarm.views.report.timed_rows import timed_rows
@@ -66,6 +68,7 @@ def _coefficients(text: str) -> list[float] | Path:
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),
     OBJECTIVES,
     SENSITIVITIES,
+    VERBOSE,
     option("--as-timed", is_flag=True, help="Judge the trajectory of --path with its own times: "
            "what it takes and leaves, and what makes it ring."),
     output_option({".json": "the plan or front", ".csv": "the path at 1 kHz or the front",
@@ -112,7 +115,8 @@ def _evaluate_coefficients(given: Given) -> None:
         profile = families()[given.profile].of_size(len(given.coefficients))
     with busy("integrating"):
         plan = evaluate_coefficients(task, given.coefficients or [], profile=profile)
-    finish_motion(FoundMotion(plan, given.remarks), given.output, sensitivities=given.sensitivities)
+    answer = FoundMotion(plan, given.remarks)
+    finish_motion(answer, given.output, **given.pick("sensitivities", "verbose"))
 
 
 def _evaluate_path(given: Given) -> None:
@@ -125,7 +129,7 @@ def _evaluate_path(given: Given) -> None:
     task = given.read_task(start=recorded.start, target=recorded.target, duration=recorded.duration)
     motion = JudgedMotion.of_free_motion(task, recorded.motion)
     with busy("integrating"):
-        first = path_lines(motion)
+        first = [*path_lines(motion), *path_answer(motion)]
         rows = path_rows(motion, recorded)
     finish([], *first, rows, *recorded.notes, *given.remarks)
 
@@ -146,7 +150,7 @@ def _evaluate_as_timed(given: Given) -> None:
             robot, given.path, residual_window=window, energy=given.energy, **multiples
         )
         rows = timed_rows(answer)
-    finish([], rows)
+    finish([], timed_answer(answer), rows)
 
 
 def _evaluate_table(given: Given) -> None:
@@ -154,7 +158,7 @@ def _evaluate_table(given: Given) -> None:
     from quietarm.studies.answers.importing import import_front
 
     task = given.read_task()
-    given.refuse(["sensitivities"], "is not for a table")
+    given.refuse(["sensitivities", "verbose"], "is not for a table")
     refuse_formats(given.output, (".json", ".csv", PICTURE), "front")
     check_page(given.output, given.objectives)
     if given.profile in SHAPERS:

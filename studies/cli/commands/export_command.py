@@ -183,7 +183,7 @@ def export(given: Given) -> None:
         return finish(files, *filter(None, made.notes))
     with _progress(form) as report:
         written, notes = write_in(form, answers, given.output, settings, report)
-    return finish([], *notes, *(f"wrote {path}" for path in written))
+    return finish([], *(f"wrote {path}" for path in written), *notes)
 
 
 def _progress(form: ExportFormat) -> AbstractContextManager[Progress | None]:

@@ -21,9 +21,11 @@ from quietarm.studies.cli.recording_options import RECORDED, read_recordings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.machine_rows import (
+    machine_answer,
     machine_notes,
     machine_rows,
     nothing_predicted,
+    prediction_answer,
     prediction_rows,
     refuse_defaults,
 )
@@ -89,6 +91,7 @@ def identify(given: Given) -> None:
     )
     return finish(
         files,
+        machine_answer(machine),
         machine_rows(machine, known),
         *machine_notes(machine, not given.angle, known),
         *notes,
@@ -130,7 +133,8 @@ def _check(
         for change in recording.mended.values()
     ]
     rows = prediction_rows(plant, predictions)
-    finish([], rows, note, *warnings, *notes, trouble=nothing_predicted(plant, predictions))
+    shown = [prediction_answer(plant, predictions), rows, note, *warnings, *notes]
+    finish([], *shown, trouble=nothing_predicted(plant, predictions))
 
 
 def _plant_at_the_end(name: str) -> Kind:

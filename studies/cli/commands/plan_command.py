@@ -39,6 +39,7 @@ from quietarm.studies.cli.options import (
     SOLVER,
     STARTS,
     TASK,
+    VERBOSE,
     YES,
     busy,
     command,
@@ -56,6 +57,7 @@ from quietarm.studies.cli.robot_options import line_note
 from quietarm.studies.cli.types import INPUT, TIME
 from quietarm.views import pictures
 from quietarm.views.report.acting_words import band_lines
+from quietarm.views.report.first_lines import floor_answer, plan_answer
 from quietarm.views.report.off_words import off_words
 from quietarm.views.report.plan_rows import floor_rows, plan_rows, sensitivity_rows
 
@@ -87,7 +89,7 @@ _OF_SOLVES = ("starts", "seed", *(param.name or "" for param in SOLVER))
            "and energy of a cycle, and what is left if a parameter is off."),
     option("--dwell", type=TIME, help="Time after each move of a cycle. [default: 0]"),
     option("--repeat", type=int, help="How many cycles. [default: 12]"),
-    SENSITIVITIES, YES,
+    SENSITIVITIES, VERBOSE, YES,
     output_option({".json": "the plan", ".csv": "the path at 1 kHz", PICTURE: "a picture"},
                   formats=["plan"]),
 )  # fmt: skip
@@ -148,7 +150,7 @@ def plan(given: Given) -> None:
                 answer = replace(answer, notes=[straightness, *answer.notes])
     if shuttle is not None and isinstance(answer.motion, Plan):
         answer = replace(answer, motion=answer.motion.with_entries(shuttle=shuttle))
-    finish_motion(_with_errors(answer), given.output, sensitivities=given.sensitivities)
+    finish_motion(_with_errors(answer), given.output, **given.pick("sensitivities", "verbose"))
 
 
 def _with_errors(answer: FoundMotion) -> FoundMotion:
@@ -160,7 +162,7 @@ def _with_errors(answer: FoundMotion) -> FoundMotion:
         words = off_words(off_model(motion.candidate), motion.task)
     except (ValueError, SolverFailedError) as error:
         words = f"what is left if the frequency is off was not computed: {error}"
-    return replace(answer, notes=[words, *answer.notes])
+    return replace(answer, off=words)
 
 
 def _read_shuttle(given: Given) -> Shuttle | None:
@@ -178,7 +180,7 @@ def _refuse_meaningless(given: Given) -> None:
     of_coefficients = ("terms", "bound", "residual_limit")
     if given.dataset is not None:
         given.refuse({param.name for param in TASK} - _OF_AXES, "is in the dataset of --from")
-        given.refuse_others({*_OF_AXES, "dataset", "output"}, "is not for --from")
+        given.refuse_others({*_OF_AXES, "dataset", "output", "verbose"}, "is not for --from")
         return
     fastest = given.duration == _FASTEST
     if given.profile not in families():
@@ -212,12 +214,18 @@ class FoundMotion:
         A plan of the same move, beside a floor.
     trouble : Exception, optional
         Raised once the files are written.
+    fastest : bool
+        Whether no shorter motion was found.
+    off : str
+        What it leaves if the plant is off its model.
     """
 
     motion: Plan | Floor
     notes: Sequence[str] = ()
     beside: Plan | None = None
     trouble: Exception | None = None
+    fastest: bool = False
+    off: str = ""
 
 
 def _find_free_motion(task: PointToPoint, *, solver: Solver, **settings: Any) -> FoundMotion:
@@ -248,7 +256,7 @@ def _find_fastest(task: PointToPoint, profile: JointProfile | None, **settings: 
     with busy("looking for the shortest duration"):
         shortest = fastest_move(task, profile, **settings)
     notes = [f"fastest: in {duration:.5g} s {why}" for duration, why in shortest.failed[:1]]
-    return FoundMotion(shortest.plan, notes)
+    return FoundMotion(shortest.plan, notes, fastest=True)
 
 
 def _find_least_energy(
@@ -260,15 +268,21 @@ def _find_least_energy(
 
 
 def finish_motion(
-    answer: FoundMotion, output: Sequence[Path], *, sensitivities: bool = False
+    answer: FoundMotion,
+    output: Sequence[Path],
+    *,
+    sensitivities: bool = False,
+    verbose: bool = False,
 ) -> None:
     """Save a motion; show its figures, and how they change with the parameters of the plant."""
     motion = answer.motion
     shown = list[str | Sequence[tuple[str, str]]]()
     if isinstance(motion, Floor):
-        shown.append(floor_rows(motion, answer.beside))
+        shown += floor_answer(motion, answer.beside)
+        shown.append(floor_rows(motion, answer.beside, verbose=verbose, off=answer.off))
     else:
-        shown += [*band_lines(motion), plan_rows(motion)]
+        shown += [*band_lines(motion), *plan_answer(motion, fastest=answer.fastest)]
+        shown.append(plan_rows(motion, verbose=verbose, off=answer.off))
         if sensitivities:
             shown += ["\n", "what a parameter that is 1 % larger adds to residual and energy:"]
             shown.append(sensitivity_rows(motion))

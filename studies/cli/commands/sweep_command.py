@@ -16,6 +16,7 @@ from quietarm.studies.cli.options import (
     SCHEDULER,
     SOLVER,
     TASK,
+    VERBOSE,
     WORKERS,
     command,
     counting,
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
            help="Find a front of so many points for every move as well."),
     PART,
     option("--yes", is_flag=True, help="Do more than a million cells."),
-    WORKERS, SCHEDULER,
+    WORKERS, SCHEDULER, VERBOSE,
     output_option({DATASET: "the moves; the same line goes on where one was stopped",
                    PICTURE: "a picture"}, required=True),
 )  # fmt: skip
@@ -65,7 +66,7 @@ def sweep(given: Given) -> None:
     from quietarm.studies.sweep.definition import Definition, PlanSettings
     from quietarm.studies.sweep.run import run_sweep
     from quietarm.studies.sweep.store import Store
-    from quietarm.studies.sweep.sweep_rows import cells_along, sweep_rows
+    from quietarm.studies.sweep.sweep_rows import cells_along, sweep_answer, sweep_rows
 
     grid = given.read_grid()
     if not grid.axes:
@@ -106,4 +107,6 @@ def sweep(given: Given) -> None:
         return fronts_figure(store) if given.front else grid_figure(store)
 
     files = answer_files([path for path in given.output if path not in datasets], picture)
-    finish(files, sweep_rows(store), *cells_along(store), *given.remarks, trouble=trouble)
+    rows = sweep_rows(store, verbose=given.verbose)
+    shown = [sweep_answer(store), rows, *cells_along(store), *given.remarks]
+    finish(files, *shown, trouble=trouble)

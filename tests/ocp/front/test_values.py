@@ -67,28 +67,31 @@ def test_the_cheapest_within_a_residual(limit, index):
 
 
 @given(st.lists(st.tuples(st.floats(1e-6, 1e-2), st.floats(0.01, 1.0)), min_size=3, max_size=12))
-def test_the_knee_is_farthest_below_the_line_between_the_ends(figures):
+def test_the_knee_has_the_least_sum_of_shares_whatever_the_ends(figures):
     front = _front(non_dominated(_points(*figures)))
-    if len(front.points) < 3:
-        assert front.knee() is front.points[0]
-        return
-    F = np.column_stack([front.residuals, front.energies])
-    F = (F - F[-1]) / (F[0] - F[-1])  # the ends at (1, 1) and (0, 0)
-    below = (1 - F[:, 1] - (1 - F[:, 0])) / math.sqrt(2)
-    assert below[front.points.index(front.knee())] >= below.max() - 1e-9
+    residual, energy = front.reference
+    knee = front.knee()
+    least = knee.residual / residual + knee.energy / energy
+    for point in front.points:
+        assert least <= point.residual / residual + point.energy / energy + 1e-12
+    shorter = front.points[: front.points.index(knee) + 2]  # without the cheap end
+    assert _front(shorter).knee() == knee
 
 
 @pytest.mark.parametrize(
     ("energies", "bends"),
     [
-        ((0.9, 0.4, 0.3), True),  # after a ninth of the way 5/6 of the energy is saved
-        ((0.9, 0.8, 0.3), False),  # 0.1 of 0.6 after a ninth: 1/18 below the line
+        # residuals 0, 1 and 9 mm of 10 mm, energies of 1 J: the sums by hand
+        ((0.9, 0.4, 0.3), True),  # 0.9, 0.5, 1.2
+        ((0.9, 0.75, 0.3), False),  # 0.9, 0.85, 1.2: less than a tenth below the end
+        ((0.3, 0.25, 0.1), False),  # 0.3, 0.35, 1.0: the end is least
         ((0.9, 0.3), False),  # its ends alone
+        ((0.9, 0.31, 0.3), False),  # 0.9, 0.41, 1.2: beside the cheap end
     ],
 )
 def test_a_front_has_a_knee_if_it_bends_by_a_tenth(energies, bends):
     residuals = (0.0, 1e-3, 9e-3) if len(energies) == 3 else (0.0, 9e-3)
-    assert has_knee(np.column_stack([residuals, energies])) is bends
+    assert has_knee(np.column_stack([residuals, energies]), (10e-3, 1.0)) is bends
 
 
 figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energies

@@ -122,7 +122,7 @@ def test_the_command_counts_imports_and_refuses_them_before_it_runs(call, tmp_pa
     line = f"bench {NAME} --methods random --runs 1 --evaluations 100 --output {tmp_path / 'out'}"
     code, _, err = call(f"{line} --import {tmp_path / 'runs'}")
     assert code == 0
-    assert "with 1 run and 1 pair no p by Holm can fall below 0.05" in err
+    assert "with 1 run and 1 pair no Holm-adjusted p can be below 0.05" in err
     for name, words in (
         ("other", "a run of my tool is of another move than"),
         ("halved", "halved.json: point 1 of 19 states energy"),
@@ -230,12 +230,12 @@ def test_the_report_has_its_tables_and_pictures(fronts, tmp_path):
     assert '"To 10 %" is the expected' in text
     assert "the largest displacements within 1 s after arrival" in text  # the problem's, eq (11)
     # of the least energy is the gradient, which repeats itself
-    assert "By energy within 1 mm: no verdict: with 5 runs of each of 4 methods" in text
+    assert "By energy within 1 mm: not significant: with 5 runs of each of 4 methods" in text
     pairs = pd.read_csv(tmp_path / "pairs.csv")
     assert pairs["measure"].value_counts().to_dict() == dict.fromkeys(compared_columns(), 6)
     assert pairs[["effect", "p", "p_holm"]].stack().between(0, 1).all()
     table = problem_table(results, NAME)
-    assert table["missing [%]"].is_monotonic_increasing
+    assert table["hypervolume gap [%]"].is_monotonic_increasing
     assert table["method"].iloc[-1] == "random search"
 
 

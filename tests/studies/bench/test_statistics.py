@@ -41,24 +41,22 @@ def test_tests_are_exact_and_no_verdict_is_given_without_power(fronts):
     assert attainable_p(5, 5) == pytest.approx(2 / 252)
     assert table["least_p_holm"].tolist() == pytest.approx([3 * 2 / 252] * 3)
     verdict = verdict_on(results, NAME)
-    assert "ends nearest" in verdict
+    assert "is best" in verdict
     assert "random search" not in verdict
     few = Results.of_jobs({job: front for job, front in searches.items() if job.seed < 3})
-    assert "no verdict: with 3 runs" in verdict_on(few, NAME)
+    assert "not significant: with 3 runs" in verdict_on(few, NAME)
 
 
 def test_power_is_said_of_the_test_that_is_used():
     # Mann and Whitney's 6 * 2 / C(10, 5), and the sign test's 3 * 2 / 2^5
     assert say_power(5, 4) == (
-        "with 5 runs of each of 4 methods (6 pairs) the least p that a pair can have, by Holm, is "
-        "0.048; against a method that finds the same from every seed it is 0.19: no verdict can be "
-        "had against one, 7 runs are needed for that"
+        "with 5 runs of each of 4 methods (6 pairs) the least Holm-adjusted p is 0.048, and 0.19 "
+        "against a deterministic method; use at least 7 runs to test against one"
     )
-    assert say_power(7, 4).endswith("is 0.0035, or 0.047 where one of them finds the same from "
-                                    "every seed")  # fmt: skip
+    assert say_power(7, 4).endswith("is 0.0035, or 0.047 against a deterministic method")
     assert say_power(5, 5) == (
-        "with 5 runs and 10 pairs no p by Holm can fall below 0.05: 6 runs are needed for a "
-        "verdict, 8 against a method that finds the same from every seed"
+        "with 5 runs and 10 pairs no Holm-adjusted p can be below 0.05; use at least 6 runs, or 8 "
+        "to test against a deterministic method"
     )
 
 
@@ -74,14 +72,14 @@ def test_against_a_repeated_method_five_runs_give_no_verdict(fronts):
         assert pair["least_p_holm"] == pytest.approx(least)
         assert pair["p_holm"] >= least
     assert verdict_on(results, NAME).endswith(
-        "not significantly different from it, as 5 runs are too few to tell: "
+        "not significantly different from it, because 5 runs are too few: "
         "epsilon constraint, SQP (points=8)"
     )
     # where the nearest is the one that repeats itself, nothing can be told
     two = {job: front for job, front in fronts.items() if job.method in ("epsilon", "random")}
     results = Results.of_jobs(two)
     assert problem_table(results, NAME)["method"][0] == "epsilon constraint, SQP (points=8)"
-    assert verdict_on(results, NAME) == f"no verdict: {say_power(5, 2)}"
+    assert verdict_on(results, NAME) == f"not significant: {say_power(5, 2)}"
 
 
 @pytest.mark.slow
@@ -153,14 +151,14 @@ def test_runs_that_repeat_each_other_are_one_value(fronts):
     above = results_with([1] * 6, [2, 3, 4, 5, 2, 3], front)
     assert pairs_on(above, NAME, "energy_1mm").p.item() == pytest.approx(2 * 0.5**6)  # six tosses
     assert np.isnan(kruskal_on(above, NAME, "energy_1mm"))
-    assert verdict_on(above, NAME, "energy_1mm") == "one ends nearest"
+    assert verdict_on(above, NAME, "energy_1mm") == "one is best"
     around = results_with([3] * 6, [1, 2, 4, 5, 3, 3], front)
     assert pairs_on(around, NAME, "energy_1mm").p.item() == 1.0
     certain = results_with([1] * 6, [2] * 6, front)
     assert pairs_on(certain, NAME, "energy_1mm").isna().sum().to_list() == [0, 0, 0, 1, 1, 1]
-    assert verdict_on(certain, NAME, "energy_1mm") == "one ends nearest"
+    assert verdict_on(certain, NAME, "energy_1mm") == "one is best"
     report = bench_report(certain, "quietarm bench").markdown()
-    assert "The same from every seed, and one value in the tests: one; other." in report
+    assert "Deterministic, and therefore one value in the tests: one; other." in report
 
 
 @pytest.mark.slow
@@ -172,12 +170,12 @@ def test_what_differs_by_less_than_a_front_s_accuracy_is_a_tie(fronts):
 
 def test_power_counts_what_is_imported():
     own = [(NAME, method) for method in ("nsga2", "epsilon") for _ in range(5)]
-    assert say_power_of(own).startswith("with 5 runs of each of 2 methods (1 pair) the least p")
+    assert say_power_of(own).startswith("with 5 runs of each of 2 methods (1 pair) the least")
     assert "5 runs of each of 3 methods (3 pairs)" in say_power_of([*own, *[(NAME, "my")] * 6])
     assert say_power_of([*own, (NAME, "my")]) == say_power_of(own)  # too few runs for a test
     assert say_power_of([(NAME, "nsga2"), (NAME, "my")]) == (
-        "with 1 run and 1 pair no p by Holm can fall below 0.05: 4 runs are needed for a verdict, "
-        "6 against a method that finds the same from every seed"
+        "with 1 run and 1 pair no Holm-adjusted p can be below 0.05; use at least 4 runs, or 6 to "
+        "test against a deterministic method"
     )
 
 

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from quietarm.metaheuristics.score import gap
 from quietarm.models import SingleLinkManipulator
 from quietarm.ocp import CycloidPolynomial, PointToPoint, epsilon_front
 from quietarm.studies.compare import compare_fronts
@@ -22,14 +23,15 @@ def measured(good, poor):
     return comparison, *(group.runs[0] for group in comparison.groups)
 
 
-def test_hypervolume_is_the_share_of_the_common_box(measured):
+def test_hypervolume_is_the_share_of_the_best_fronts(measured):
     comparison, better, worse = measured
     # the best front goes from 0 to 8 mm and from 0.8 to 0.4 J: a tenth of that beyond its ends
     assert comparison.corner == pytest.approx((8.8e-3, 0.84))
-    # widths times heights of the steps, of a box of 8.8 by 0.44
-    box = 8.8 * 0.44
-    assert better.scores["hypervolume"] == pytest.approx((4 * 0.04 + 4 * 0.34 + 0.8 * 0.44) / box)
-    assert worse.scores["hypervolume"] == pytest.approx(2.8 * 0.24 / box)
+    # widths times heights of the steps
+    whole = 4 * 0.04 + 4 * 0.34 + 0.8 * 0.44
+    assert better.scores["hypervolume"] == pytest.approx(1)
+    assert worse.scores["hypervolume"] == pytest.approx(2.8 * 0.24 / whole)
+    assert gap(worse.scores["hypervolume"]) == pytest.approx(100 * (1 - 2.8 * 0.24 / whole))
 
 
 def test_igd_plus_and_epsilon_in_units_of_the_best_fronts_extent(measured, good):

@@ -24,7 +24,7 @@ def test_notes_of_a_plant_stand_beside_what_they_touch():
     task = qa.PointToPoint(Guessed(), target=0.5, duration=0.8)
     rows = plan_rows(qa.evaluate_coefficients(task, [0.0]))
     warned = [name for name, words in rows if "(warning: the load is a guess)" in words]
-    assert warned == ["energy (F2)", "peak torque"]
+    assert warned == ["energy", "peak torque"]
     assert ("warning", "the gripper was not weighed") in rows
     assert note_lines(task.plant) == [
         "warning: the load is a guess",

@@ -26,7 +26,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(folder):
     record = found.record
     assert (record.settings["starts"], record.seed, found.task.torque_limit) == (2, 3, 0.4)
     assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
-    assert f"{found.energy:.6g} J" in ran.stdout
+    assert f"{found.energy:.4g} J" in ran.stdout
     assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
 
 
@@ -34,7 +34,7 @@ def test_json_goes_to_standard_output_and_words_to_standard_error(call, plan):
     code, out, err = call(f"plan {MOVE} --terms 2 --quiet --output -")
     assert code == 0
     assert json.loads(out)["stated"]["energy"] == pytest.approx(plan.energy, rel=1e-9)
-    assert "energy (F2)" in err
+    assert err.startswith("This plan takes ")
 
 
 @pytest.mark.slow
@@ -47,7 +47,7 @@ def test_the_motion_without_a_parametrisation_takes_less(done):
     plan = plan_move(floor.task)
     assert plan.energy > floor.energy
     for energy in (plan.energy, floor.energy):
-        assert f"{energy:.6g} J" in out
+        assert f"{energy:.4g} J" in out
     assert Path("f.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -78,7 +78,7 @@ def test_an_energy_that_is_not_the_papers_is_named(done):
 def test_sensitivities_are_a_row_a_parameter_where_asked_for(call, done):
     line = f"evaluate {MOVE} --coefficients=0.003347,-0.1697"
     out = done(f"{line} --sensitivities")
-    assert re.search(r"^omega +[0-9.]+ mm, [-+][0-9.]+ %", out, re.MULTILINE)
+    assert re.search(r"^omega \(frequency\) +[0-9.]+ mm, [-+][0-9.]+ %", out, re.MULTILINE)
     assert "1 % larger" not in call(line)[1]
 
 
