@@ -119,7 +119,7 @@ def _servo_rows(plan: Plan) -> list[Row]:
     held, moving = plan.candidate.modes_on_drive
     words = f"{_hertz(held)} with the joint held, {_hertz(moving)} on the servo"
     if plan.candidate.inverts_drive:
-        held_words = "taken as recorded with the joint held (recorded=moving, if the axis moved)"
+        held_words = "as recorded with the joint held"
         return [("set points", f"of the load's path through the drive; {words}, {held_words}")]
     return [("set points", f"the planned path, as recorded on the moving servo; {words}")]
 

@@ -37,6 +37,8 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     }.items():
         if names:
             rows.append((words, ", ".join(_with_unit(machine.plant, name) for name in names)))
+    if machine.recorded is not None:
+        rows.append(("recorded", machine.recorded))
     rows += [(part.recording, _part(machine.plant, part)) for part in machine.parts]
     return rows + [(name, f"left out: {why}") for name, why in machine.left_out.items()]
 
@@ -118,7 +120,7 @@ def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = (
     if at_rest:
         notes.append(
             "The joint is taken to be held: name its angle's column by --angle, where a controller "
-            "holds it. One that gives way shifts the frequency."
+            "holds it. One that gives way shifts the frequency. A --drive needs --recorded."
         )
     if len(machine.parts) == 1:
         notes.append(
