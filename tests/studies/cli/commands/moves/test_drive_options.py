@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -112,3 +113,19 @@ def test_a_machines_file_says_how_it_was_recorded(call, refused):
     told = " ".join(out.split())
     assert "the machine's file says that it was recorded moving, which is not used" in told
     assert "give recorded=held" in refused(f"{ON_LOOPS} --set omega1=4.5Hz")
+
+
+@pytest.mark.slow
+def test_a_band_that_a_slow_servo_does_not_keep_is_warned_of(call):
+    """A gripper of 12 Hz on a servo of 20 Hz, docs/servo.md; at 60 Hz it is kept."""
+    move = AXIS.replace(" --terms 2", " --jerk-limit 1500 --acceleration-limit 22 --band 0.1mm")
+    slow = "--drive position_loop=30/s,speed_loop=20Hz,reset_time=60ms,compliance=0,rotor=1.2kg"
+    rest = "friction_motor=3N,friction_load=2N,dead_time=0.25ms,recorded=held"
+    _, out, _ = call(f"{move} {slow},{rest}")
+    told = " ".join(out.split())
+    left = re.search(r"worst on it ([\d.]+) mm with frequency [+-]5 % left \(warning: beyond", told)
+    assert float(left[1]) == pytest.approx(0.136, abs=0.02)
+    quick = "--drive position_loop=90/s,speed_loop=60Hz,reset_time=20ms,compliance=0,rotor=1.2kg"
+    _, out, _ = call(f"{move} {quick},{rest}")
+    assert "worst on it" in out
+    assert "beyond the band" not in out
