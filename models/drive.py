@@ -52,14 +52,16 @@ class Drive:
     feedforward : str
         What the controller takes beside the position: "acceleration" (with the speed), "speed"
         or "none".
-    recorded : str
-        How the plant's frequencies were recorded: "held", with a brake or with friction that
-        sticks, or "moving", on the servo while the axis moves.
+    recorded : str, optional
+        How the plant's frequencies were recorded: "held", with a brake, with friction that sticks
+        or with the joint's motion as an input of the fit, or "moving", on the servo while the axis
+        moves. With both loops it has to be stated: their servo shifts a frequency that was recorded
+        held.
 
     Raises
     ------
     ValueError
-        When a number is out of range, or a word unknown.
+        When a number is out of range, a word unknown, or `recorded` not stated beside both loops.
     """
 
     example: ClassVar[str] = "a drive, as Drive(position_loop=60, speed_loop=40)"
@@ -74,7 +76,7 @@ class Drive:
     dead_time: float | None = _quantity(SECOND, "dead time")
     motor_constant: float | None = _quantity(EFFORT, "motor constant, over the root of the loss")
     feedforward: FeedForward = "acceleration"
-    recorded: Recorded = "held"
+    recorded: Recorded | None = None
 
     def __post_init__(self) -> None:
         for name in NUMBERS:
@@ -89,10 +91,18 @@ class Drive:
                 f"dead time is {self.dead_time:g} s; give at most {LONGEST_DEAD_TIME:g} s"
             )
         for name, kind in WORDS.items():
+            if name == "recorded" and self.recorded is None:
+                continue
             if getattr(self, name) not in get_args(kind):
                 raise ValueError(
                     f"{name} is {quoted(getattr(self, name))}; give {' or '.join(get_args(kind))}"
                 )
+
+        if self.has_loops and self.recorded is None:
+            raise ValueError(
+                "the servo shifts frequencies, and how they were recorded is not stated; give "
+                "recorded=held (a brake, or --angle in the fit) or recorded=moving (on the servo)"
+            )
 
     @property
     def unknown(self) -> tuple[str, ...]:

@@ -34,12 +34,12 @@ class LinearAxis(Plant):
     omega1: float = parameter(75.4, "rad/s", _MADE_UP, "frequency of mode 1, carriage held")
     zeta1: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 1", DAMPING)
     share1: float = parameter(
-        1.0, "-", _MADE_UP, "of the load's displacement that is mode 1, not effective mass"
+        1.0, "-", _MADE_UP, "swing of the load by mode 1, as a share of a point mass's on a spring"
     )
     omega2: float = parameter(150.0, "rad/s", _MADE_UP, "frequency of mode 2, carriage held")
     zeta2: float = parameter(0.02, "-", _MADE_UP, "damping ratio of mode 2", DAMPING)
     share2: float = parameter(
-        0.0, "-", _MADE_UP, "of the load's displacement that is mode 2, not effective mass"
+        0.0, "-", _MADE_UP, "swing of the load by mode 2, as a share of a point mass's on a spring"
     )
     mass: float = parameter(8.0, "kg", _MADE_UP, "of all that moves, the load and the motor's part")
     load: float = parameter(2.0, "kg", _MADE_UP, "of that, what swings")

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from quietarm.ocp.checks import takes
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.shaper import shaped_cycloid
-from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.rollout import Simulation
@@ -77,35 +76,18 @@ def _residuals(
     motion: JudgedMotion, names: Sequence[str], rows: Sequence[Sequence[float]]
 ) -> Array:
     """Residuals with these errors [m]; of a motion without a profile by CVODES."""
+    task = motion.task
     if motion.profile is None:
         return np.array([motion.perturbed(dict(zip(names, row))).residual for row in rows])
-    steps = default_steps(motion.task, least=_STEPS)
-    if motion.task.plant.has_path:
-        evaluator = motion.by_steps(steps, quantities=(), error_names=names)
-        return evaluator([motion.coefficients], rows).residual[0]
-    return _in_numbers(motion, steps, names, np.array(rows))
-
-
-def _in_numbers(motion: JudgedMotion, steps: int, names: Sequence[str], rows: Array) -> Array:
-    """Residuals by the same simulation in numbers: nothing is compiled, which takes longer."""
-    task = motion.task
-    assert motion.profile is not None
-    breaks = motion.profile.breaks(task.duration)
     simulation = Simulation(
-        task.plant, motion.profile, steps, errors=tuple(names), energy=task.energy, breaks=breaks
+        task.plant,
+        motion.profile,
+        default_steps(task, least=_STEPS),
+        errors=tuple(names),
+        breaks=motion.profile.breaks(task.duration),
     )
-    nodes = NODES * len(simulation.mesh.lengths)
-    count = len(rows)
-
-    def columns(values: Sequence[float]) -> list[ca.DM]:
-        return [ca.DM(np.full((count, nodes), value)) for value in values]
-
-    rollout = simulation.rollout(
-        columns(motion.coefficients),
-        [*columns(task.move), *(ca.DM(np.full((count, 1), w)) for w in task.initial_state)],
-        [ca.DM(np.repeat(column[:, None], nodes, axis=1)) for column in rows.T],
-        count,
-    )
-    perturbed = perturb_plant(task.plant, dict(zip(names, map(ca.DM, rows.T))))
-    vibration = FreeVibration(perturbed, [task.target] * count, task.residual_window)
-    return vibration.peak(task.missed(np.array(rollout.arrival)))
+    errors = np.array(rows)
+    arrivals = simulation.arrivals(motion.coefficients, (*task.move, *task.initial_state), errors)
+    perturbed = perturb_plant(task.plant, dict(zip(names, map(ca.DM, errors.T))))
+    vibration = FreeVibration(perturbed, [task.target] * len(errors), task.residual_window)
+    return vibration.peak(task.missed(arrivals))

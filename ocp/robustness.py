@@ -34,7 +34,7 @@ _STEP = 1e-4
 _ALONG = {1: 201, 2: 41, 3: 15, 4: 9}
 """Errors along each side of the grid, by the number of ranges."""
 _ALONG_ROUGHLY = {1: 51, 2: 21, 3: 9, 4: 5}
-"""The same where peaks are looked for that are to become scenarios."""
+"""The same where peaks are looked for that are to become scenarios, or of many motions."""
 _ALONG_BY_CVODES = {1: 41, 2: 9, 3: 5, 4: 3}
 """The same where each takes some milliseconds."""
 
@@ -90,6 +90,29 @@ def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> JudgedMo
         return np.array([candidate.perturbed(row).residual for row in named_errors])
 
     return _peaks(residuals, candidate, ranges, _ALONG_BY_CVODES[len(ranges)])[0]
+
+
+@takes(task=PointToPoint, profile=JointProfile)
+def worst_of_rows(task: PointToPoint, profile: JointProfile, rows: ArrayLike) -> Array:
+    """Return what each row of coefficients leaves at most within a task's ranges [m].
+
+    All rows at all errors of a grid are one evaluation by fixed steps.
+
+    Parameters
+    ----------
+    rows : array_like, shape (motions, profile.size)
+
+    Returns
+    -------
+    ndarray, shape (motions,)
+    """
+    ranges = task.ranges
+    faster = 1 + max(ranges.values(), default=0.0)  # any of them may be a frequency
+    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task.certain, least=1))))
+    evaluator = Evaluator(task, profile, steps, quantities=[], error_names=tuple(ranges))
+    shares = _grid(np.linspace(-1, 1, _ALONG_ROUGHLY[len(ranges)]), len(ranges))
+    errors = shares * np.array(list(ranges.values()))
+    return evaluator(rows, errors).residual.max(axis=1)
 
 
 def peaks_between(

@@ -137,8 +137,8 @@ class PointToPoint:
         Largest distance of the tip from its target after arrival [m], static sag included, for all
         errors of the `uncertainty`; it is less than the tip moves. The residual limit of plans and
         fronts is then by default the band over the `margin`, and their figure `acts_after` is the
-        time until the tip stays within the band. Where no uncertainty is given it is 5 % of the
-        frequency; None is none, and `replace` keeps that of the task.
+        time until the tip stays within the band. A band is for a range of errors: where no
+        uncertainty is given, or None, by a `replace` as well, it is 5 % of the frequency.
     margin : float, optional
         How many times the residual limit the band is, 1 or more; 3 by default, for what servo and
         dry friction of a machine leave beside the plant's vibration.
@@ -222,7 +222,7 @@ class PointToPoint:
         initial: ModalState | None = None,
         final: ModalState | None = None,
         energy: Energy = ABSOLUTE_POWER,
-        uncertainty: Uncertainty | None = _NOT_GIVEN,
+        uncertainty: Uncertainty | None = None,
         torque_speed: Sequence[tuple[float, float]] | None = None,
         *,
         bounds: Mapping[str, Bounds] | None = None,
@@ -230,8 +230,8 @@ class PointToPoint:
         margin: float = MARGIN,
         **limits: Bounds | None,
     ) -> None:
-        if uncertainty is _NOT_GIVEN:
-            uncertainty = None if band is None else Uncertainty(RANGE_OF_BAND)
+        if uncertainty is None and band is not None:
+            uncertainty = Uncertainty(RANGE_OF_BAND)
         given = {
             "torque_limit": torque_limit,
             "speed_limit": speed_limit,
@@ -515,8 +515,10 @@ class PointToPoint:
 
     @property
     def certain(self) -> PointToPoint:
-        """The move of the nominal plant alone."""
-        return self if self.uncertainty is None else replace(self, uncertainty=None)
+        """The move of the nominal plant alone, without a band, which is for a range of errors."""
+        if self.uncertainty is None:
+            return self
+        return replace(self, uncertainty=None, band=None, margin=MARGIN)
 
     def with_samples(self, samples: Iterable[Sequence[float]]) -> PointToPoint:
         """The move with these samples of its uncertainty."""

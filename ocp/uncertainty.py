@@ -244,6 +244,10 @@ def _check_symbols(plant: Plant, name: str, value: float) -> None:
         )
 
 
+class _Corners(tuple[Scenario, ...]):
+    """Samples by default, which `replace` with other ranges works out again."""
+
+
 @dataclass(frozen=True)
 class Uncertainty:
     """Ranges of parameter errors, and the scenarios in them that are considered.
@@ -257,7 +261,8 @@ class Uncertainty:
         Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"`` of
         all modes, and of any parameter of the plant.
     samples : sequence of sequence of float, optional
-        Errors of the scenarios beside the nominal plant, in that order; all corners by default.
+        Errors of the scenarios beside the nominal plant, in that order; by default all corners, of
+        `replace` with other ranges those of these.
 
     Raises
     ------
@@ -278,7 +283,9 @@ class Uncertainty:
                 f"residual is evaluated; give at most {MOST_RANGES}"
             )
         corners = product(*((-size, size) for size in ranges.values()))
-        by_default = isinstance(self.samples, tuple | list) and not self.samples
+        by_default = isinstance(self.samples, _Corners) or (
+            isinstance(self.samples, tuple | list) and not self.samples
+        )
         rows = list(corners) if by_default else self.samples
         table = numbers("samples", rows, "a row of errors for each scenario")
         if table.ndim != 2:
@@ -286,7 +293,8 @@ class Uncertainty:
                 f"samples have shape {table.shape}; give (scenarios, {len(ranges)}), a row of "
                 "errors for each scenario"
             )
-        samples = tuple(map(tuple, table.tolist()))
+        scenarios = map(tuple, table.tolist())
+        samples = _Corners(scenarios) if by_default else tuple(scenarios)
         most = (1 + _SAME) * np.array(list(ranges.values()))
         for sample in samples:
             if len(sample) != len(most) or not np.all(np.abs(sample) <= most):

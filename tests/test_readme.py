@@ -17,6 +17,30 @@ def test_there_are_commands_for_a_move_of_your_own():
     assert named >= set(quietarm.commands)
 
 
+WITHOUT_JERK_LIMIT = {
+    "ur5_bar.yaml": ("robots", "The limits are those that MoveIt has, jerk included"),
+    "--profile free": ("gallery", "its acceleration jumps"),
+    "--from": ("sweeps", "keeps the limits of its sweep"),
+}
+"""What a command without a limit of the jerk says in place of it, and the page with the reason."""
+
+
+def test_plans_of_the_pages_have_a_limit_of_the_jerk_or_a_reason():
+    typed = [
+        line
+        for text in PAGES.values()
+        for block in re.findall(r"^```\w+\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+        for line in block.splitlines()
+        if re.search(r"quietarm plan |--duration fastest", line)
+    ]
+    assert len(typed) > 40
+    without = [line for line in typed if "--jerk-limit" not in line]
+    assert [line for line in without if not any(word in line for word in WITHOUT_JERK_LIMIT)] == []
+    for word, (page, reason) in WITHOUT_JERK_LIMIT.items():
+        assert any(word in line for line in without)
+        assert reason in " ".join(PAGES[page].split())
+
+
 # What it says
 
 

@@ -27,6 +27,7 @@ from quietarm.machine.identify.swings.ring_downs import moves
 from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, checked_recordings
 from quietarm.models import Plant
+from quietarm.models.drive import Recorded
 from quietarm.ocp.checks import finite, several, takes
 from quietarm.ocp.record import versions
 from quietarm.ocp.uncertainty import refuse_unknown
@@ -40,6 +41,7 @@ def identify(
     plant: Plant,
     free: Sequence[str] | None = None,
     parts: Sequence[tuple[float, float]] = (),
+    recorded: Recorded | None = None,
 ) -> Identified:
     """Fit a plant's parameters to recordings, by least squares on its own equations.
 
@@ -58,6 +60,10 @@ def identify(
         nothing but the torque depends on.
     parts : sequence of (float, float), optional
         Begin and end [s] of each ring-down, in every recording; found by default.
+    recorded : str, optional
+        How the joint was while it was recorded, "held" or "moving" under its servo, which a `Drive`
+        has to know. By default it is held where its angle is recorded, since its motion is then an
+        input of the fit; else it is not known.
 
     Returns
     -------
@@ -128,7 +134,14 @@ def identify(
         warnings=tuple(doubts),
         versions=versions(),
         rough=combined.rough,
+        recorded=recorded or _recorded(recordings, fitted),
     )
+
+
+def _recorded(recordings: Sequence[Recording], parts: Sequence[Part]) -> Recorded | None:
+    """Held where the joint's angle was recorded, at rest or as an input of every fit."""
+    known = all(recording.angle is not None for recording in recordings)
+    return "held" if known and all(part.cause != "hub" for part in parts) else None
 
 
 @takes(plant=Plant)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import JointMotion, Plant
+from quietarm.models.drive import Recorded
 from quietarm.models.plant import DAMPING, FREQUENCY
 from quietarm.ocp.checks import IF_STATED
 from quietarm.ocp.saved import Answer
@@ -153,6 +154,9 @@ class Identified(Answer):
     rough : dict of str to float
         The values of parameters that are not identifiable but told roughly: with an interval as
         wide as they are.
+    recorded : str, optional
+        How the joint was while it was recorded, as of a `Drive`: "held" also where its recorded
+        motion is an input of the fit, so that the frequencies are those of a held one.
     """
 
     kind: ClassVar[str] = "machine"
@@ -167,6 +171,7 @@ class Identified(Answer):
     warnings: tuple[str, ...]
     versions: dict[str, str]
     rough: dict[str, float] = field(default_factory=dict, metadata=IF_STATED)
+    recorded: Recorded | None = field(default=None, metadata=IF_STATED)
 
     @property
     def untold(self) -> tuple[str, ...]:

@@ -289,9 +289,7 @@ class _LegMap:
     def _integrated(self, start: Array, errors: Mapping[str, float]) -> Array:
         amplitudes, rates = np.split(start, 2)
         state = ModalState(tuple(amplitudes.tolist()), tuple(rates.tolist()))
-        moved = _along(
-            self.leg, replace(self.leg.task, initial=state, final=None, uncertainty=None)
-        )
+        moved = _along(self.leg, replace(self.leg.task.certain, initial=state, final=None))
         return moved.perturbed(errors).arrival[0]
 
     def after(self, state: Array) -> Array:

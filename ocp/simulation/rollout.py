@@ -8,8 +8,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 
-from quietarm.models import Expression, Plant
+from quietarm.models import Expression, JointMotion, Plant
 from quietarm.models.joint_motion import is_zero
 from quietarm.ocp.checks import takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
@@ -27,6 +29,8 @@ from quietarm.ocp.simulation.collocation import (
 from quietarm.ocp.simulation.mesh import Mesh, mesh_of
 from quietarm.ocp.simulation.objective import spent
 from quietarm.ocp.uncertainty import perturb_plant
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -121,6 +125,36 @@ class Simulation(NamedTuple):
             energy=self.energy,
         )
 
+    def arrivals(self, coefficients: Sequence[float], row: Sequence[float], errors: Array) -> Array:
+        """Return the state on arrival of one motion for each row of relative errors.
+
+        It is that of `rollout` in numbers, without torques: nothing is built or compiled, which
+        takes longer than a few rows.
+
+        Parameters
+        ----------
+        coefficients : sequence of float
+            Of the profile.
+        row : sequence of float
+            That of a task: start, target, duration, and the state before.
+        errors : ndarray, shape (rows, errors)
+
+        Returns
+        -------
+        ndarray, shape (rows, 2 * modes)
+        """
+        rows, nodes = len(errors), NODES * len(self.mesh.lengths)
+
+        def columns(values: Sequence[float]) -> list[ca.DM]:
+            return [ca.DM(np.full((rows, nodes), value)) for value in values]
+
+        by_node = [ca.DM(np.repeat(column[:, None], nodes, axis=1)) for column in errors.T]
+        plant = perturb_plant(self.plant, dict(zip(self.errors, by_node)))
+        joint, h = _at_nodes(self.profile, columns(coefficients), columns(row[:3]), self.mesh, rows)
+        every_step = collocate(modal_system(plant, joint), h)
+        *_, arrival = march(*every_step.transition(), h.shape, row[3:])
+        return np.array(arrival)
+
 
 @lru_cache(maxsize=128)
 def places_of(simulation: Simulation) -> Mapping[str, slice]:
@@ -180,13 +214,11 @@ def symbolic_rollout(
             f"got {len(coefficients)} coefficients for a profile of {profile.size}; give one each"
         )
     mesh = mesh_of(profile, steps, breaks)
-    times, length = mesh.columns(candidates)
-    fraction = ca.horzcat(*times)
-    joint = profile.motion(coefficients, fraction, *move)
+    joint, h = _at_nodes(profile, coefficients, move, mesh, candidates)
     if jerk:
+        fraction = ca.horzcat(*mesh.columns(candidates)[0])
         stretched = profile.motion(coefficients, mesh.stretch(fraction), *move, jerk=True)
         joint = joint._replace(jerk=stretched.jerk)
-    h = at_each_node(move[2], length)[0] * length
     every_step = collocate(modal_system(plant, joint), h)
     W, dW, arrival = march(*every_step.transition(), h.shape, initial)
     states = every_step.nodes(W, dW, every_step.accelerations(W, dW))
@@ -199,6 +231,19 @@ def symbolic_rollout(
         unbroken=not breaks,
         definition=energy,
     )
+
+
+def _at_nodes(
+    profile: JointProfile,
+    coefficients: Sequence[Expression],
+    move: Sequence[Expression],
+    mesh: Mesh,
+    candidates: int,
+) -> tuple[JointMotion, Expression]:
+    """The joint at the nodes of all steps, those of a kind side by side, and the steps' lengths."""
+    times, length = mesh.columns(candidates)
+    joint = profile.motion(coefficients, ca.horzcat(*times), *move)
+    return joint, at_each_node(move[2], length)[0] * length
 
 
 def modes_at_nodes(states: Sequence[NodeState]) -> NodeState:

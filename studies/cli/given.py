@@ -10,6 +10,7 @@ import click
 from click.core import ParameterSource
 
 from quietarm.models import Drive, Plant
+from quietarm.models.drive import Recorded
 from quietarm.ocp import JointProfile, PointToPoint, Solver
 from quietarm.ocp.planning.named_profiles import profile_of
 from quietarm.ocp.solvers.choice import SOLVERS
@@ -92,10 +93,13 @@ class Given:
             hint = f"'--{name.replace('_', '-')}'"
             raise click.BadParameter(str(error), param_hint=hint) from None
 
-    def read_drive(self, plant: Plant) -> Drive | None:
-        """The drive that was typed, in the units of the plant's joint; None where none was."""
+    def read_drive(self, plant: Plant, recorded: Recorded | None = None) -> Drive | None:
+        """The drive that was typed, in the units of the plant's joint; None where none was.
+
+        How the frequencies were recorded is `recorded` where it was not typed.
+        """
         try:
-            return parse_drive(self.drive, plant.joint)
+            return parse_drive(self.drive, plant.joint, recorded)
         except ValueError as error:
             raise click.BadParameter(str(error), param_hint="'--drive'") from None
 

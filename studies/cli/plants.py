@@ -10,8 +10,9 @@ from typing import Any
 from rich.console import Console
 
 from quietarm.machine.identify import Identified
-from quietarm.machine.identify.identified import LEAST_OF_FREQUENCY
+from quietarm.machine.identify.identified import LEAST_OF_FREQUENCY, is_modal
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
+from quietarm.models.drive import Recorded
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.task import RANGE_OF_BAND
@@ -78,6 +79,13 @@ def build_plant(kind: Kind, values: Mapping[str, Any]) -> Plant:
                 f"{kind.name} has no value for {entry.name}; give --set {entry.name}=..."
             )
     return kind(**values)
+
+
+def recorded_of(kind: Kind, changed: Collection[str]) -> Recorded | None:
+    """How the frequencies of an identified machine were recorded, unless other ones are set."""
+    if not isinstance(kind, Identified) or any(is_modal(kind.plant, name) for name in changed):
+        return None
+    return kind.recorded
 
 
 def build_uncertainty(

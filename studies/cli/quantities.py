@@ -23,6 +23,7 @@ from quietarm.models import Drive, Plant
 from quietarm.models.dimensions import EFFORT, SPEED
 from quietarm.models.drive import NUMBERS as DRIVE_NUMBERS
 from quietarm.models.drive import WORDS as DRIVE_WORDS
+from quietarm.models.drive import Recorded
 from quietarm.models.drive import unit_of as drive_unit
 from quietarm.models.joint_motion import LINEAR, MIXED, ROTARY
 from quietarm.models.plant import DAMPING, OTHER
@@ -278,8 +279,11 @@ def parse_torque_speed(text: str, joint: str = ROTARY) -> tuple[tuple[float, flo
     return tuple(map(_of_drives.get(joint, _of_drives[ROTARY]), text.split(",")))
 
 
-def parse_drive(texts: Iterable[str], joint: str) -> Drive | None:
-    """Read what is known of a drive: ``speed_loop=40Hz,position_loop=60/s``; None of no text."""
+def parse_drive(texts: Iterable[str], joint: str, recorded: Recorded | None = None) -> Drive | None:
+    """Read what is known of a drive: ``speed_loop=40Hz,position_loop=60/s``; None of no text.
+
+    How the frequencies were recorded is `recorded` where no text says it.
+    """
     parts = [part for text in texts for part in text.split(",")]
     pairs = [parse_pair(part, "a drive's number", "speed_loop=40Hz") for part in parts]
     values = dict[str, Any]()
@@ -290,7 +294,7 @@ def parse_drive(texts: Iterable[str], joint: str) -> Drive | None:
             values[name] = _of_drive_number(name, text, joint)
         else:
             raise ValueError(has_no("a drive", "number", name, (*DRIVE_NUMBERS, *DRIVE_WORDS)))
-    return Drive(**values) if values else None
+    return Drive(**{"recorded": recorded} | values) if values else None
 
 
 def _of_drive_number(name: str, text: str, joint: str) -> float:

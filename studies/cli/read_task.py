@@ -22,6 +22,7 @@ from quietarm.studies.cli.plants import (
     choose_kind,
     floor_words,
     parameters_of,
+    recorded_of,
     uncertainty_of_band,
     warn_of_notes,
     warn_of_payload,
@@ -135,7 +136,14 @@ def _of_joint(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:
     parameters = parameters_of(kind, given.parameters)
     plant = build_plant(kind, {name: min(values) for name, values in parameters.items()})
     if given.drive:
-        plant = replace(plant, drive=given.read_drive(plant))
+        recorded = recorded_of(kind, parameters)
+        drive = given.read_drive(plant, recorded)
+        plant = replace(plant, drive=drive)
+        if recorded is not None and drive is not None and drive.recorded != recorded:
+            given.remarks.append(
+                f"the machine's file says that it was recorded {recorded}, which is not used: "
+                f"--drive says recorded={drive.recorded}"
+            )
     uncertainty = build_uncertainty(kind, given.errors, parameters)
     given.remarks += floor_words(kind, given.errors)
     values = dict(parameters)

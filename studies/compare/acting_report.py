@@ -62,7 +62,7 @@ def few_by_residual(motions: Sequence[ComparedMotion]) -> list[ComparedMotion]:
     there = [motion for motion in motions if motion.motion is not None]
     baselines = sorted((motion for motion in there if motion.is_baseline), key=left)
     given = [motion for motion in there if not motion.is_baseline]
-    kept = [*given, *baselines[: max(MOST_CURVES - len(given), 0)]]
+    kept = [*given, *baselines][:MOST_CURVES]
     return [motion for motion in there if any(motion is one for one in kept)]
 
 

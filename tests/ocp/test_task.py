@@ -1,5 +1,6 @@
 """What is asked: valid tasks, and what is refused when a task is made."""
 
+import dataclasses
 import math
 
 import pytest
@@ -31,6 +32,35 @@ def test_a_number_out_of_range_is_named_with_its_value(name, value):
     with pytest.raises(ValueError, match=name.replace("_", ".") + " is") as error:
         qa.PointToPoint(**task)
     assert f"{value:g}" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        {"band": 1e-3},  # which is for a range of errors
+        {"band": 1e-3, "uncertainty": None},
+        {"band": 1e-3, "uncertainty": qa.Uncertainty({"frequency": 0.1})},
+        {"band": 1e-3, "margin": 2.0},
+        {"plant": LinearAxis(), "jerk_limit": 30.0},  # and its residual window
+        {"target": 0.7, "residual_window": None},
+        {"torque_speed": [(99, 0), (9, 2)]},
+        {"duration": 0.9, "bounds": {"torque": 0.2}},
+    ],
+    ids=lambda others: ", ".join(others),
+)
+def test_replace_does_what_the_constructor_does(others):
+    move = {"plant": qa.SingleLinkManipulator(), "target": 0.5, "duration": 0.8}
+    task = dataclasses.replace(qa.PointToPoint(**move), **others)
+    assert task == qa.PointToPoint(**{**move, **others})
+    assert (task.band is None) or task.ranges  # a band always means a range
+    assert task.certain.band is None
+
+
+def test_other_ranges_have_their_own_corners():
+    wide = dataclasses.replace(qa.Uncertainty({"frequency": 0.1}), ranges={"frequency": 0.2})
+    assert wide == qa.Uncertainty({"frequency": 0.2})
+    stated = qa.Uncertainty({"frequency": 0.1}, [(0.05,)])
+    assert dataclasses.replace(stated, ranges={"frequency": 0.2}).samples == ((0.05,),)
 
 
 @pytest.mark.parametrize("angle", [30, -90.0, 22.5])

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.optimize import isotonic_regression
 
 from quietarm.interrupts import interruptible
 from quietarm.views.pictures.axes import axes_or_new, head, logarithmic, new_figure
 from quietarm.views.pictures.grammar import LIMIT, looks
+from quietarm.views.pictures.named_ends import NamedEnd, name_ends
 from quietarm.views.tips import tip_scale, tip_words
 
 if TYPE_CHECKING:
@@ -25,15 +25,6 @@ _WIDEST = 100.0
 _NARROWEST = 0.5
 """Bands that are drawn, as multiples of the one that was asked for."""
 _BANDS = 25
-
-
-class _End(NamedTuple):
-    """Where a curve ends, and the name that stands beside it."""
-
-    x: float
-    y: float
-    name: str
-    colour: str
 
 
 @interruptible
@@ -69,7 +60,7 @@ def draw_acting(
     bands = np.geomspace(_WIDEST * band, _NARROWEST * band, _BANDS)
     times = [acting.latest_of(bands) for acting in found]
     bottom, top = _shown_times(times, [motion.duration or 0.0 for motion in judged])
-    ends = list[_End]()
+    ends = list[NamedEnd]()
     for motion, how, of_one in zip(judged, looks([one.meaning for one in judged]), times):
         ax.plot(
             scale * bands, of_one, color=how.colour, linestyle=how.dash, linewidth=how.width,
@@ -80,7 +71,7 @@ def draw_acting(
     logarithmic(ax, scale * bands)
     ax.set_xlim(scale * bands[0], scale * bands[-1])
     ax.set_ylim(bottom, top)
-    _name_ends(ax, ends)
+    name_ends(ax, ends)
     return ax
 
 
@@ -93,59 +84,15 @@ def _shown_times(times: Sequence[np.ndarray], durations: Sequence[float]) -> tup
     return earliest - room, most + room
 
 
-def _end_of(bands: np.ndarray, times: np.ndarray, top: float, name: str, colour: str) -> _End:
+def _end_of(bands: np.ndarray, times: np.ndarray, top: float, name: str, colour: str) -> NamedEnd:
     """The last point of a curve below the end of the axis."""
     last = int(np.flatnonzero(times <= top)[-1]) if np.any(times <= top) else 0
     if last + 1 == len(bands):
-        return _End(float(bands[-1]), float(times[-1]), name, colour)
+        return NamedEnd(float(bands[-1]), float(times[-1]), name, colour)
     after = times[last + 1]
     share = 0.0 if math.isinf(after) else (top - times[last]) / (after - times[last])
     x = math.exp(float(np.interp(share, (0, 1), np.log(bands[last : last + 2]))))
-    return _End(x, top, name, colour)
-
-
-def _name_ends(ax: Axes, ends: Sequence[_End]) -> None:
-    """Write a name at the end of each curve, where no two of them touch."""
-    top = ax.get_ylim()[1]
-    _name_right([end for end in ends if end.y < top], ax)
-    _name_above([end for end in ends if end.y >= top], ax)
-
-
-def _name_right(ends: Sequence[_End], ax: Axes) -> None:
-    """Names right of the axes, each as high as its curve's end, or where there is room."""
-    if not ends:
-        return
-    gap = 0.09  # of the height of the axes, where letters of 8 points do not touch
-    bottom, top = ax.get_ylim()
-    ordered = sorted(ends, key=lambda end: end.y)
-    steps = gap * np.arange(len(ordered))
-    wanted = np.array([(end.y - bottom) / (top - bottom) for end in ordered])
-    places = isotonic_regression(wanted - steps).x.clip(0.0, 1.0 - steps[-1]) + steps
-    for end, place in zip(ordered, places.tolist()):
-        _name(ax, end, (1.04, place), "left", "center")
-
-
-def _name_above(ends: Sequence[_End], ax: Axes) -> None:
-    """Names above the axes, each left of the place where its curve leaves them."""
-    letter = 0.027  # width of a letter of 8 points, as a share of narrow axes
-    line = 0.08
-    to_axes = ax.transData + ax.transAxes.inverted()
-    taken = list[float]()
-    for x, end in sorted((float(to_axes.transform((end.x, end.y))[0]), end) for end in ends):
-        left = x - letter * len(end.name)
-        level = next((k for k, right in enumerate(taken) if right < left), len(taken))
-        taken[level : level + 1] = [x]
-        _name(ax, end, (x, 1.02 + line * level), "right", "bottom")
-
-
-def _name(ax: Axes, end: _End, place: tuple[float, float], ha: str, va: str) -> None:
-    """A name at a place of the axes, with a thin line to the end of its curve."""
-    ax.annotate(
-        end.name, (end.x, end.y), place, xycoords="data", textcoords="axes fraction", ha=ha, va=va,
-        fontsize=8, color=end.colour, annotation_clip=False,
-        arrowprops={"arrowstyle": "-", "color": end.colour, "linewidth": 0.6, "shrinkA": 1,
-                    "shrinkB": 0, "relpos": (0.0, 0.5) if ha == "left" else (1.0, 0.0)},
-    )  # fmt: skip
+    return NamedEnd(x, top, name, colour)
 
 
 @interruptible

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from quietarm.interrupts import interruptible
@@ -14,13 +16,13 @@ from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.rest import REST, rest_of
 from quietarm.views.pictures.axes import (
     axes_or_new,
-    legend_of,
     logarithmic,
     name_objectives,
     residual_label,
     side_by_side,
 )
 from quietarm.views.pictures.grammar import LIMIT, looks
+from quietarm.views.pictures.named_ends import NamedEnd, name_right
 from quietarm.views.report.captions import caption_of_judged
 from quietarm.views.tips import tip_scale
 
@@ -135,5 +137,30 @@ def motions_figure(motions: Sequence[ComparedMotion], title: str, tip_unit: str 
         axes[0].set_xlabel(f"{label} (open: nominal plant, filled: worst case)")
     for name, ax in zip(names, axes[1:]):
         draw_robustness(curves, name, ax, meanings)
-    figure.legend(*legend_of(axes), loc="outside lower center", ncols=4, fontsize=8)
+        words = f"{100 * TOLERATED:g} %"
+        ax.annotate(words, (0.01, 100 * TOLERATED), (0, 3), color=LIMIT.colour, fontsize=8,
+                    xycoords=("axes fraction", "data"), textcoords="offset points",
+                    bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5})  # fmt: skip
+    for ax in axes:
+        _name_lines(ax)
     return figure
+
+
+def _name_lines(ax: Axes) -> None:
+    """Write the name of each line right of the axes, beside where it ends."""
+    limits = {f"{100 * TOLERATED:g} %"}
+    lines = [
+        line
+        for line in ax.get_lines()
+        if not str(line.get_label()).startswith("_") and line.get_label() not in limits
+    ]
+    ends = [
+        NamedEnd(
+            float(np.asarray(line.get_xdata())[-1]),
+            float(np.asarray(line.get_ydata())[-1]),
+            str(line.get_label()),
+            to_hex(line.get_color()),
+        )
+        for line in lines
+    ]
+    name_right(ends, ax)

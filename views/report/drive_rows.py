@@ -52,13 +52,26 @@ def drive_rows(plan: Plan) -> list[Row]:
 
 
 def _worst_on_drive(plan: Plan) -> list[Row]:
-    """What is left on the drive at the worst errors of a robust plan."""
+    """What a robust plan leaves on the drive at the errors that are worst there.
+
+    They may be others than those of the plant alone: the servo gives way to what a structure of
+    another frequency does to it.
+    """
     if plan.worst is None:
         return []
-    figures = plan.candidate.perturbed(plan.worst.errors).on_drive
-    assert figures is not None  # as the nominal one
-    residual = tip_words(figures.residual, plan.task.plant.tip_unit)
-    return [("worst on it", f"{residual} with {signed_errors(plan.worst.errors)} left")]
+    task = plan.task
+    corners = [dict(zip(task.ranges, sizes)) for sizes in task.scenarios[1:]]
+    left = [
+        (figures.residual, errors)
+        for errors in (dict(plan.worst.errors), *corners)
+        if (figures := plan.candidate.perturbed(errors).on_drive) is not None
+    ]
+    residual, errors = max(left, key=lambda one: one[0])
+    words = f"{tip_words(residual, task.plant.tip_unit)} with {signed_errors(errors)} left"
+    if task.band is not None and residual > task.band:
+        words += f"  (warning: beyond the band of {tip_words(task.band, 'm')}, which holds for a "
+        words += "larger speed_loop or smaller errors)"
+    return [("worst on it", words)]
 
 
 def cycle_rows(plan: Plan) -> list[Row]:
@@ -119,7 +132,7 @@ def _servo_rows(plan: Plan) -> list[Row]:
     held, moving = plan.candidate.modes_on_drive
     words = f"{_hertz(held)} with the joint held, {_hertz(moving)} on the servo"
     if plan.candidate.inverts_drive:
-        held_words = "taken as recorded with the joint held (recorded=moving, if the axis moved)"
+        held_words = "as recorded with the joint held"
         return [("set points", f"of the load's path through the drive; {words}, {held_words}")]
     return [("set points", f"the planned path, as recorded on the moving servo; {words}")]
 

@@ -15,7 +15,9 @@ from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.joint_words import further_words
 from quietarm.ocp.limits import FRONT, QUANTITIES
 from quietarm.ocp.objectives import Objective, objectives_on
-from quietarm.ocp.robustness import worst_of
+from quietarm.ocp.planning.certify import OVERRUN
+from quietarm.ocp.rest import still_of
+from quietarm.ocp.robustness import worst_of, worst_of_rows
 from quietarm.views.report.captions import caption_of_front, caption_of_fronts
 from quietarm.views.report.plan_rows import worst_in_words
 from quietarm.views.report.words import (
@@ -42,9 +44,8 @@ def gradient_lines(front: Front, asked_for: int, check: CrossCheck | None = None
             f"  {f'within {tip_words(level, tip_unit)}':14} {_within(front, level)}"
             for level in LEVELS
         ),
-        _residual_line(front.task)
-        + "; between them more may remain, as quietarm plan says" * bool(front.task.ranges),
-        *_band_lines(front.task),
+        _residual_line(front.task),
+        *_range_lines(front),
         *([] if check is None else [_check_line(check)]),
         *_grid_lines(front),
         *failure_lines(front, asked_for),
@@ -83,7 +84,8 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str
         points = [*_chosen_points(front), *_noise_lines(front)]
         how = [_found_line(front)]
         lines += points + how if len(fronts) == 1 else how + points
-    return [*lines, _residual_line(task), *_band_lines(task), *notes]
+    ranges = [line for front in fronts for line in _range_lines(front)]
+    return [*lines, _residual_line(task), *ranges, *notes]
 
 
 def _found_line(front: Front) -> str:
@@ -116,6 +118,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[s
         ),
         *_chosen_points(polished),
         _residual_line(polished.task),
+        *_range_lines(polished),
         *([f"{counted(dominated, 'point')} dropped, dominated by another now"] * (dominated > 0)),
         *failure_lines(polished, len(given.points)),
         f"{polished.record.method}: {counted(len(given.points), 'point')}, "
@@ -143,15 +146,35 @@ def _residual_line(task: PointToPoint) -> str:
     return f"residuals are {residual_place(task)}"
 
 
-def _band_lines(task: PointToPoint) -> list[str]:
-    """What of a band for errors a front does not keep, and what does; nothing without one."""
-    if task.band is None or not task.ranges:
+def _range_lines(front: Front) -> list[str]:
+    """What the points leave within the range of errors, beyond its ends; nothing without one."""
+    task = front.task
+    if not task.ranges or not front.points:
         return []
-    return [
-        "the points of a front keep their residuals in the scenarios alone, at the ends of the "
-        "range of errors; quietarm front --objectives time,energy, or quietarm plan --band, keeps "
-        "the band in all of it"
-    ]
+    worst = worst_of_rows(task, front.profile, [point.coefficients for point in front.points])
+    residuals = np.array([point.residual for point in front.points])
+    more = worst - residuals
+    leave_more = (more > OVERRUN * residuals) & (more > still_of(task))
+    farthest = int(more.argmax())
+    words = (
+        "the points keep their residuals in the scenarios alone, at the ends of the range of errors"
+    )
+    if not leave_more.any():
+        return [f"{words}; within it none leaves more"]
+    unit = task.plant.tip_unit
+    words += (
+        f"; within it {leave_more.sum()} of {len(worst)} leave more, at most "
+        f"{tip_words(worst[farthest], unit)} where the front has "
+        f"{residual_words(residuals[farthest], task)}"
+    )
+    limit = task.band_limit
+    if limit is not None:
+        words += (
+            f", and {(worst <= (1 + OVERRUN) * limit).sum()} leave no more than "
+            f"{tip_words(limit, unit)}, the band over its margin; quietarm front --objectives "
+            "time,energy, or quietarm plan --band, keeps the band in all of it"
+        )
+    return [words]
 
 
 def _chosen_points(front: Front) -> list[str]:

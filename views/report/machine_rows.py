@@ -37,6 +37,8 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     }.items():
         if names:
             rows.append((words, ", ".join(_with_unit(machine.plant, name) for name in names)))
+    if machine.recorded is not None:
+        rows.append(("recorded", machine.recorded))
     several = len(machine.parts) > 1
     rows += [
         (part.recording, _part(machine.plant, part, with_values=several)) for part in machine.parts
@@ -146,7 +148,7 @@ def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = (
     if at_rest:
         notes.append(
             "The joint is taken to be held: name its angle's column by --angle, where a controller "
-            "holds it. One that gives way shifts the frequency."
+            "holds it. One that gives way shifts the frequency. A --drive needs --recorded."
         )
     if len(machine.parts) == 1:
         notes.append(

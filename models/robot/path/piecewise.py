@@ -218,7 +218,8 @@ class Place:
         by_row = list[Expression]()
         for row in range(rows):
             weights = ca.vertcat(1.0, *(factor[row, 0] for factor in factors))
-            summed = ca.MX(pattern, ca.mtimes(entries, weights))
+            sums = ca.mtimes(entries, weights)
+            summed = type(sums)(pattern, sums)
             by_row.append(ca.mtimes(summed, self._basis[:, row::rows]))
         order = np.arange(rows * columns).reshape(rows, columns).T.ravel().tolist()
         for number, value in zip(used, ca.vertsplit(ca.horzcat(*by_row)[:, order])):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from typing import get_args
 
 import click
 
@@ -11,6 +12,7 @@ from quietarm.machine import identify as identification
 from quietarm.machine.identify.identified import is_modal
 from quietarm.machine.recordings.read_recording import notes_in_words
 from quietarm.models import Plant
+from quietarm.models.drive import Recorded
 from quietarm.ocp.checks import has_no
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
@@ -42,6 +44,9 @@ from quietarm.views.report.machine_rows import (
     option("--assume", type=NAMES, help="Parameters that keep the plant's own default in the "
            "machine's file, as hub_inertia,friction, or all: neither the recordings nor --set tell "
            "them."),
+    option("--recorded", type=click.Choice(get_args(Recorded)), help="How the joint was while it "
+           "was recorded: held, or moving under its servo. A --drive needs it. [default: held if "
+           "--angle is given, else not known]"),
     option("--check", type=Parsed("machine", parse_plant), help="An identified machine: how much "
            "of the recordings it predicts. PLANT is left out."),
     output_option({".json": "the machine, which serves as a PLANT",
@@ -79,7 +84,9 @@ def identify(given: Given) -> None:
         sought = identification.sought(recordings, plant, given.free)
         refuse_defaults(plant, _others(plant, {*sought, *told_otherwise}))
     with busy("fitting"):
-        machine = identification.identify(recordings, plant, given.free, given.parts)
+        machine = identification.identify(
+            recordings, plant, given.free, given.parts, given.recorded
+        )
     machine = machine.with_given(plant, known)
     if saves:
         told = set(plant.measured) - set(machine.untold)
@@ -93,7 +100,7 @@ def identify(given: Given) -> None:
         files,
         machine_answer(machine),
         machine_rows(machine, known),
-        *machine_notes(machine, not given.angle, known),
+        *machine_notes(machine, machine.recorded is None, known),
         *notes,
     )
 
@@ -124,7 +131,9 @@ def _check(
     given: Given, plant: Plant, recordings: Sequence[Recording], notes: Sequence[str]
 ) -> None:
     """Show how much of recordings a machine predicts; an error where it is nothing."""
-    given.refuse(["output", "parts", "free", "assume"], "is not for --check, which fits nothing")
+    given.refuse(
+        ["output", "parts", "free", "assume", "recorded"], "is not for --check, which fits nothing"
+    )
     note = "The state is taken from two periods, and the five after them are predicted."
     predictions = identification.predict(plant, recordings)
     warnings = [

@@ -188,6 +188,10 @@ def _refuse_meaningless(given: Given) -> None:
         free = given.profile in FREE
         given.refuse(of_coefficients, why)
         given.refuse(["sensitivities", "in_full", "returns"] if free else _OF_SOLVES, why)
+        if free:
+            given.refuse(
+                ["band"], "is for a range of errors, and free has none but the nominal plant"
+            )
         if fastest:
             raise ValueError(f"--duration fastest {why}; give a time")
         endings = [ending_of(path) for path in given.output]

@@ -192,6 +192,7 @@ def test_a_hub_that_swings_with_the_tip_is_part_of_the_model():
     assert found.plant.omega == pytest.approx(2 * math.pi * 1.83, rel=2e-3)
     assert found.plant.zeta == pytest.approx(0.006, abs=2e-3)
     assert found.parts[0].hub == "moves"
+    assert (found.recorded, alone.recorded) == ("held", None)  # its motion is met, or not known
 
 
 @pytest.mark.parametrize("by_hand", [{}, {"parts": [(3.0, 6.4)]}])

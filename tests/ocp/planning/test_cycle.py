@@ -109,7 +109,14 @@ def test_a_robot_goes_back_along_its_path_at_rest():
 @pytest.mark.slow
 def test_cycles_on_a_drive_begin_as_a_move_and_build_up_as_the_structure_on_its_servo_does(move):
     """Twelve moves at 5 % too low a frequency: docs/servo.md has what a machine leaves."""
-    drive = Drive(position_loop=60, speed_loop=40, reset_time=0.03, compliance=1 / 6e6, rotor=18)
+    drive = Drive(
+        position_loop=60,
+        speed_loop=40,
+        reset_time=0.03,
+        compliance=1 / 6e6,
+        rotor=18,
+        recorded="held",
+    )
     moved = move.on(replace(move.task, plant=replace(AXIS, drive=drive)))
     error = {"frequency": -0.05}
     left = moved.cycle(0.3, 6, error).on_drive()

@@ -11,6 +11,7 @@ from fixed_steps import rollout
 
 import quietarm as qa
 from quietarm.ocp import perturb_plant
+from quietarm.ocp.robustness import worst_of, worst_of_rows
 from quietarm.ocp.simulation.evaluator import Evaluator
 
 MOVE = [0.003347, -0.1697]  # the paper's, N = 2
@@ -67,3 +68,14 @@ def test_worst_is_what_a_dense_search_finds(task, evaluated):
     ).motion
     # With the errors as parameters CVODES takes other steps: within its tolerance the same.
     assert evaluated.worst.residual == pytest.approx(again.residual, rel=1e-5)
+
+
+def test_many_motions_are_looked_at_within_their_range_at_once():
+    """The paper's two terms leave most between the ends, the plain cycloid at one of them."""
+    uncertainty = qa.Uncertainty({"frequency": 0.05})
+    task = qa.PointToPoint(qa.SingleLinkManipulator(), pi / 6, 0.8, uncertainty=uncertainty)
+    profile, rows = qa.CycloidPolynomial(2), [MOVE, [0.0, 0.0]]
+    worst = worst_of_rows(task, profile, rows)
+    motions = [qa.JudgedMotion.of_profile(task, profile, row) for row in rows]
+    expected = [worst_of(motion).residual for motion in motions]
+    assert worst == pytest.approx(expected, rel=2e-3)

@@ -25,6 +25,7 @@ GANTRY = Drive(
     friction_load=20,
     dead_time=2.5e-4,
     motor_constant=30,
+    recorded="held",
 )
 PICKER = Drive(
     position_loop=90,
@@ -34,6 +35,7 @@ PICKER = Drive(
     friction_motor=3,
     friction_load=2,
     dead_time=2.5e-4,
+    recorded="held",
 )
 SMOOTH = {"friction_motor": 0.0, "friction_load": 0.0}
 
@@ -140,7 +142,7 @@ def off_path(plan):
 
 @pytest.mark.slow
 def test_a_link_that_turns_follows_the_planned_path_by_its_set_points():
-    drive = Drive(position_loop=30, speed_loop=20, reset_time=0.05)
+    drive = Drive(position_loop=30, speed_loop=20, reset_time=0.05, recorded="held")
     plain = qa.SingleLinkManipulator()
     moved = plain_move(replace(plain, drive=drive), span=qa.deg(30), duration=0.8)
     figures = moved.candidate.on_drive
@@ -216,6 +218,11 @@ def test_a_drive_is_saved_with_its_plan_and_a_plan_without_one_as_before(tmp_pat
         ({"speed_loop": "40"}, "speed loop is '40'; give a number"),
         ({"friction_load": -2.0}, "friction load is -2; give 0 or more"),
         ({"dead_time": 0.5}, "dead time is 0.5 s; give at most 0.02 s"),
+        (
+            {"position_loop": 60, "speed_loop": 40},
+            "the servo shifts frequencies, and how they were recorded is not stated; give "
+            "recorded=held (a brake, or --angle in the fit) or recorded=moving (on the servo)",
+        ),
         ({"recorded": "never"}, "recorded is 'never'; give held or moving"),
         ({"feedforward": None}, "feedforward is None; give acceleration or speed or none"),
     ],

@@ -8,6 +8,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from quietarm.models import Drive, FlexibleBeam, JointMotion, LinearAxis, SingleLinkManipulator
 from quietarm.ocp import PointToPoint, Uncertainty, evaluate_coefficients, plan_move
@@ -81,6 +82,19 @@ def test_the_report_has_a_row_for_each_and_says_what_is_missing(judged):
     assert "- 3hump-ei-ruckig: within the limits" in report.markdown()
     figure = report.figures["motions.png"]()
     assert [ax.get_xlabel() for ax in figure.axes][1:] == ["error of frequency [%]"]
+
+
+def test_the_picture_names_five_motions_at_most_beside_their_curves_without_a_legend():
+    kinds = ["cycloid", "zv", "zvd", "mzv", "ei", "2hump-ei", "3hump-ei"]
+    judged = compare_plans({}, kinds, task=replace(MOVE, duration=1.4))
+    figure = plans_report(MOVE, judged).figures["motions.png"]()
+    (ax,) = figure.axes
+    assert (figure.legends, ax.get_legend()) == ([], None)
+    names = [line.get_label() for line in ax.get_lines() if line.get_label()[0] != "_"]
+    assert sorted(text.get_text() for text in ax.texts) == sorted(names)
+    assert len(names) == 5
+    colours = {line.get_label(): to_hex(line.get_color()) for line in ax.get_lines()}
+    assert all(to_hex(text.get_color()) == colours[text.get_text()] for text in ax.texts)
 
 
 def test_plans_of_another_move_are_refused(plan, cycloid):

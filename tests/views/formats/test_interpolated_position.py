@@ -133,7 +133,7 @@ def test_revolutions_are_of_joints_that_turn(tmp_path):
 
 
 def test_a_plan_of_a_drive_has_its_set_points_through_the_drive(tmp_path):
-    drive = qa.Drive(position_loop=60, speed_loop=40, reset_time=0.03)
+    drive = qa.Drive(position_loop=60, speed_loop=40, reset_time=0.03, recorded="held")
     plan = plan_of(PointToPoint(LinearAxis(drive=drive), 0.3, 0.5))
     header, _, rows = records_of(plan, tmp_path / "move.cia402", period=0.002, increments=1e6)
     asked = plan.commanded(500)

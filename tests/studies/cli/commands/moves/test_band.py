@@ -128,6 +128,9 @@ def test_a_front_begins_with_its_motion_that_acts_first(done):
     assert "J at 0.001 mm or less in the scenarios, acts after" in end
     assert "worst case 0.00" in end
     assert "at rest" not in out
+    worst = max(worst_of(motion).residual for motion in motions)
+    inside = re.search(r"within it \d of \d+ leave more, at most ([\d.]+) mm", out)
+    assert float(inside[1]) <= 1e3 * worst * (1 + 1e-3)
     assert "keep their residuals in the scenarios alone" in out
     assert "--objectives time,energy, or quietarm plan --band" in out
 
