@@ -34,7 +34,7 @@ def times_of_points(plan: Plan, rate: float, thin: float | None) -> Array:
             f"thin is {thin:g}, and the plan's set points go through its drive, at every tick; "
             "leave it out"
         )
-    return times[fewest_points(times, *_moving(plan, times), thin)]
+    return times[fewest_points(times, *moving_joints(plan, times), thin)]
 
 
 def left_between(plan: Plan, times: Array) -> str:
@@ -47,7 +47,7 @@ def left_between(plan: Plan, times: Array) -> str:
     if not isinstance(plant, RobotOnPath):
         left = tip_words(residual_at(plan, times, 3), plant.tip_unit)
         return f"{count} {left}, and the plan {tip_words(plan.residual, plant.tip_unit)}"
-    points, speeds, accelerations = _moving(plan, times)
+    points, speeds, accelerations = moving_joints(plan, times)
     table = JointTable(plant.joint_names, points, times, speeds, accelerations)
     answer = evaluate_as_timed(
         plant.robot,
@@ -62,7 +62,7 @@ def left_between(plan: Plan, times: Array) -> str:
     return f"{count} {left} by the whole equations, and the plan {of_plan}"
 
 
-def _moving(plan: Plan, times: Array) -> tuple[Array, Array, Array]:
+def moving_joints(plan: Plan, times: Array) -> tuple[Array, Array, Array]:
     """Positions, speeds and accelerations of all joints, shape (times, joints)."""
     joints = plan.sampled(times).sample.joints
     points, speeds, accelerations = (

@@ -53,33 +53,39 @@ def read_joint_table(path: str | Path) -> JointTable:
         When it has none, several, or a point without positions of all joints.
     """
     if Path(path).suffix.lower() in _MESSAGES:
-        return _trajectory_of(path)
+        return table_of_message(read_yaml(path, "path"), f"path {path}")
     return _table_of(path)
 
 
-def _trajectory_of(path: str | Path) -> JointTable:
-    """The JointTrajectory in a message, however deep."""
-    messages = list(_trajectories_in(read_yaml(path, "path")))
+def table_of_message(message: object, what: str) -> JointTable:
+    """The points of the JointTrajectory in a message, however deep; its name is for errors.
+
+    Raises
+    ------
+    ValueError
+        As of `read_joint_table`.
+    """
+    messages = list(_trajectories_in(message))
     filled = [message for message in messages if message["joint_names"] or message["points"]]
     positioned = [message for message in filled if not _is_in_space(message)]
     if not positioned:
         raise ValueError(
-            f"path {path} is no JointTrajectory; give one with joint_names and points, or a csv"
+            f"{what} is no JointTrajectory; give one with joint_names and points, or a csv"
         )
     if len(positioned) > 1:
         raise ValueError(
-            f"path {path} has {len(positioned)} trajectories; give a file of one of them"
+            f"{what} has {len(positioned)} trajectories; give a file of one of them"
         )
     (trajectory,) = positioned
     points = trajectory["points"]
     names = tuple(map(str, trajectory["joint_names"] or ()))
     if _CUT_OFF in (*(points or ()), *names):
         raise ValueError(
-            f"path {path} is cut off at '...'; write it whole, by ros2 topic echo --full-length"
+            f"{what} is cut off at '...'; write it whole, by ros2 topic echo --full-length"
         )
     positions = _entries(points, "positions")
-    if positions is None:
-        raise ValueError(f"path {path} has a point without positions of all joints; write it again")
+    if positions is None or positions.ndim != 2:
+        raise ValueError(f"{what} has a point without positions of all joints; write it again")
     others = {entry for point in points for entry, value in point.items() if value}
     unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
     remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []
