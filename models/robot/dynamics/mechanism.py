@@ -26,7 +26,7 @@ BEAM_END = "beam end"
 _X = np.array([1.0, 0.0, 0.0])
 _Y = np.array([0.0, 1.0, 0.0])
 _ALONG = np.array([0.0, 0.0, 1.0])
-"""The beam in the frame of its link."""
+"""The beam in its own frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,7 +243,8 @@ def _moved(joint: UrdfJoint, position: float) -> Frame:
 
 def _add_beam(tree: _Tree, beam: Beam) -> None:
     """The pieces of a beam, on two hinges each."""
-    place = tree.links[beam.at]
+    link, at_link = tree.links[beam.at]
+    place = (link, at_link @ beam.frame)
     pieces = beam.bodies
     damping_time = beam.damping_time
     tree.load(place, pieces[0])

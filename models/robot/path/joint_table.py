@@ -73,9 +73,7 @@ def table_of_message(message: object, what: str) -> JointTable:
             f"{what} is no JointTrajectory; give one with joint_names and points, or a csv"
         )
     if len(positioned) > 1:
-        raise ValueError(
-            f"{what} has {len(positioned)} trajectories; give a file of one of them"
-        )
+        raise ValueError(f"{what} has {len(positioned)} trajectories; give a file of one of them")
     (trajectory,) = positioned
     points = trajectory["points"]
     names = tuple(map(str, trajectory["joint_names"] or ()))
