@@ -131,7 +131,7 @@ class MessagePlanner:
         QuietarmError
             When there is no plan within the limits.
         """
-        table = table_of_message(message, "the message")
+        table = table_of_message(message, "the message").without_repeated
         if not table.joints:
             raise ValueError("the message has no joint_names; give those of its positions")
         _check_rest(table)

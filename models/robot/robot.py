@@ -16,6 +16,7 @@ import numpy as np
 from quietarm.interrupts import interruptible
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import (
+    ROTARY,
     Array,
     Expression,
     JointMotion,
@@ -225,7 +226,23 @@ class Robot(CheckedRobot):
                     f"path; its range is {least:g} to {most:g}{self._with_followers(name)}, give a "
                     "path within it"
                 )
-        return path
+        words = tuple(words for words in self._long_turns(path) if words not in path.remarks)
+        return replace(path, remarks=(*path.remarks, *words)) if words else path
+
+    def _long_turns(self, path: GeometricPath) -> Iterable[str]:
+        """Words on joints without ends that go the long way round between two waypoints."""
+        for name, column in zip(self.joints, path.waypoints.T):
+            if not self.description.joints[name].endless or self.kind_of(name) != ROTARY:
+                continue
+            steps = np.diff(column)
+            at = int(np.abs(steps).argmax()) if len(steps) else 0
+            if len(steps) and abs(steps[at]) > math.pi:
+                short = steps[at] - math.copysign(math.tau, steps[at])
+                yield (
+                    f"joint {quoted(name)}, which has no ends, turns by {steps[at]:.4g} rad "
+                    f"between waypoints {at + 1} and {at + 2}; for the short way of {short:.4g} "
+                    f"rad give {column[at] + short:.5g} in place of {column[at + 1]:.5g}"
+                )
 
     def check_positions(self, points: Array) -> None:
         """Refuse positions of the driven joints, a row a point, beyond the range of one."""

@@ -64,7 +64,8 @@ def _mass_rows(robot: Robot) -> list[Row]:
                 "beam",
                 f"{beam.length:g} m at {beam.at}{_place_words(beam)}, {mass:.4g} kg and "
                 f"{beam.tip_mass:.4g} kg at its end, {counted(beam.count, 'hinge')} in each "
-                f"direction; clamped, without gravity, it swings at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y",
+                f"direction; clamped, without gravity, it swings "
+                f"at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y",
             )
         )
     return rows

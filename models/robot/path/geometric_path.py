@@ -421,11 +421,22 @@ class GeometricPath:
         positions, nearest = self.beside_lines
         return np.abs(positions - nearest).max(axis=0)
 
+    @property
+    def _is_spline(self) -> bool:
+        """Whether its knots are waypoints, all or some of those that it was made of."""
+        return len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
+
+    @property
+    def waypoints(self) -> Array:
+        """Waypoints of a spline through all of them [rad or m]; no rows of other paths."""
+        if not self._is_spline or self.lines:
+            return np.zeros((0, self.count))
+        return self.inner(np.array(self.knots))
+
     @cached_property
     def beside_lines(self) -> tuple[Array, Array]:
         """Positions along it, and the nearest points of the lines between its waypoints."""
-        of_spline = len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
-        if not of_spline and not self.lines:
+        if not self._is_spline and not self.lines:
             return np.zeros((1, self.count)), np.zeros((1, self.count))
         knots = np.array(self.knots)
         samples = max(_SAMPLES_OF_PIECE, _SAMPLES // (len(knots) - 1))

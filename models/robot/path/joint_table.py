@@ -43,6 +43,44 @@ class JointTable:
     accelerations: Array | None = None
     remarks: tuple[str, ...] = ()
 
+    @property
+    def without_repeated(self) -> JointTable:
+        """The table without rows that repeat the time and the positions of the row before them.
+
+        MoveIt gives such rows at the start where a planner repeats its first state.
+        """
+        times = self.times
+        if times is None:
+            return self
+        nearest = np.abs(np.diff(self.positions, axis=0)).max(axis=1, initial=0.0)
+        repeated = np.append(False, (np.diff(times) == 0) & (nearest <= _AS_FAR))
+        if not repeated.any():
+            return self
+        rows = np.flatnonzero(repeated) + 1
+        words = " and ".join(
+            f"points {row - 1} and {row} are at one time and place and taken as one"
+            for row in rows[:_NAMED].tolist()
+        )
+        more = f", and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
+        kept = ~repeated
+        velocities, accelerations = (
+            None if rows is None else rows[kept] for rows in (self.velocities, self.accelerations)
+        )
+        return JointTable(
+            self.joints,
+            self.positions[kept],
+            times[kept],
+            velocities,
+            accelerations,
+            (*self.remarks, f"{words}{more}"),
+        )
+
+
+_AS_FAR = 1e-9
+"""By which positions of one place may differ: a file's rounding [rad or m]."""
+_NAMED = 3
+"""Rows that repeat others, of which each is named."""
+
 
 def read_joint_table(path: str | Path) -> JointTable:
     """The points of a file: csv, or a JointTrajectory in YAML or a message that has one within.
