@@ -187,6 +187,8 @@ LINE = (
            "--start to this place of a link, 400mm,200mm,0.5, or with roll, pitch and yaw to turn "
            "to; by inverse kinematics."),
     option("--line-by", metavar="X,Y,Z", help="The same by its way: --line-by=0,0,-200mm."),
+    option("--free-orientation", is_flag=True, help="The line is by the place of the link alone, "
+           "which turns as its joints like."),
     option("--link", metavar="NAME", help="The link on the line. [default: the one that carries "
            "the beam, or else the tip]"),
 )  # fmt: skip

@@ -15,7 +15,7 @@ from quietarm.views.report.words import counted
 if TYPE_CHECKING:
     from quietarm.studies.cli.given import Given
 
-LINE_NAMES = ("line_to", "line_by", "link")
+LINE_NAMES = ("line_to", "line_by", "free_orientation", "link")
 """Options of a straight line in space."""
 PATH_NAMES = (*LINE_NAMES, "path_tolerance")
 """Options of a robot's path alone."""
@@ -45,7 +45,7 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
     given.refuse(["path_tolerance"], "is for the waypoints of --path")
     if given.line_to is not None or given.line_by is not None:
         return _line_in_space(given, robot)
-    given.refuse(["link"], "is for --line-to and --line-by")
+    given.refuse(["free_orientation", "link"], "is for --line-to and --line-by")
     if not (given.typed("start") and given.typed("target")):
         return None
     ends = [_positions(given.start, "--start", robot), _positions(given.target, "--target", robot)]
@@ -83,6 +83,7 @@ def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
         to=_numbers(given.line_to, "--line-to", (3, 6), "x,y,z or x,y,z,roll,pitch,yaw"),
         by=_numbers(given.line_by, "--line-by", (3,), "x,y,z"),
         link=given.link,
+        turns=not given.free_orientation,
     )
 
 

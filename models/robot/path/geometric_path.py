@@ -56,6 +56,8 @@ _WITHIN = 0.9
 _SHARES = (0.02, 0.05, 0.1, 0.25)
 """Of a tolerance, by which the lines that are kept may be others than those of all points."""
 _MOST_LINES = 400
+_OF_A_POSE = 6
+"""Numbers of a place and an orientation."""
 
 
 class _NotSmoothError(ValueError):
@@ -143,6 +145,7 @@ class GeometricPath:
         to: ArrayLike | None = None,
         by: ArrayLike | None = None,
         link: str | None = None,
+        turns: bool = True,
     ) -> GeometricPath:
         """Straight in space for a link of the robot that does not bend, by inverse kinematics.
 
@@ -162,6 +165,9 @@ class GeometricPath:
             In place of `to`: the way x, y, z [m], along the ground's axes; the link does not turn.
         link : str, optional
             By default the one that carries the beam, or else the tip.
+        turns : bool
+            False lets the link turn as it likes: the line is by its place alone, by the shortest
+            steps of the joints.
 
         Raises
         ------
@@ -182,8 +188,13 @@ class GeometricPath:
             end = before.moved(_numbers("by", by, (3,), "x, y, z [m]"))
         else:
             pose = _numbers("to", to, (3, 6), "x, y, z [m], or these and roll, pitch, yaw [rad]")
+            if len(pose) == _OF_A_POSE and not turns:
+                raise ValueError(
+                    "to of the line has roll, pitch and yaw, and its orientation is free; give x, "
+                    "y, z alone"
+                )
             end = Pose.of(pose, before)
-        return cls.of(straight_positions(kinematics, positions, end), joints=robot.joints)
+        return cls.of(straight_positions(kinematics, positions, end, turns), joints=robot.joints)
 
     @classmethod
     def through(
@@ -423,7 +434,7 @@ class GeometricPath:
 
     @property
     def _is_spline(self) -> bool:
-        """Whether its knots are waypoints, all or some of those that it was made of."""
+        """Return whether its knots are waypoints, all or some of those that it was made of."""
         return len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
 
     @property
