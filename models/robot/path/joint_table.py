@@ -43,6 +43,31 @@ class JointTable:
     accelerations: Array | None = None
     remarks: tuple[str, ...] = ()
 
+    def between(self, points: tuple[int, int] | None) -> JointTable:
+        """The table from one point to another, counted from 1; all of it without these.
+
+        Raises
+        ------
+        ValueError
+            When they are no points of it, or not two.
+        """
+        if points is None:
+            return self
+        first, last = points
+        if not 1 <= first < last <= len(self.positions):
+            raise ValueError(
+                f"waypoints {first}:{last} are none of {len(self.positions)}; give the numbers of "
+                "the first and the last, as 2:4"
+            )
+        rows = slice(first - 1, last)
+        times, velocities, accelerations = (
+            None if values is None else values[rows]
+            for values in (self.times, self.velocities, self.accelerations)
+        )
+        return JointTable(
+            self.joints, self.positions[rows], times, velocities, accelerations, self.remarks
+        )
+
     @property
     def without_repeated(self) -> JointTable:
         """The table without rows that repeat the time and the positions of the row before them.
