@@ -35,6 +35,7 @@ from quietarm.models.robot.checked_robot import CheckedRobot
 from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
 from quietarm.models.robot.dynamics.robot_parts import Limits
 from quietarm.models.robot.elastic.beam import Beam
+from quietarm.models.robot.mujoco_model import entries_of_mujoco
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
 from quietarm.models.robot.on_path.path_tables import (
@@ -134,6 +135,30 @@ class Robot(CheckedRobot):
             When an entry is unknown, or its value cannot be used.
         """
         return cls(**read_robot(path))
+
+    @classmethod
+    @interruptible
+    def from_mujoco(cls, model: Any, **others: Any) -> Robot:
+        """Read a model of MuJoCo, mujoco.MjModel.from_xml_path("robot.xml"): its tree of bodies.
+
+        Its joints with `stiffness` are springs, its `armature` is inertia of rotors, `damping` and
+        `frictionloss` are friction; a joint that an equality ties to another follows it. Actuators,
+        geometry and contacts are not used.
+
+        Parameters
+        ----------
+        model : mujoco.MjModel
+            As MuJoCo has compiled it, of MJCF or of URDF.
+        **others : Any
+            Further arguments of `Robot`, such as joints, beam and tip; one that the model has as
+            well is in its place.
+
+        Raises
+        ------
+        ValueError
+            When it has a free or a ball joint, a loop, or tendons with springs; as of `Robot`.
+        """
+        return cls(**(entries_of_mujoco(model) | others))
 
     @interruptible
     def along(self, path: GeometricPath) -> RobotOnPath:
