@@ -314,16 +314,18 @@ def _check_start(table: JointTable, start: Mapping[str, float]) -> None:
 def _held_elsewhere(robot: Robot, places: Mapping[str, float | Following]) -> list[str]:
     """Words on joints that stand elsewhere than where the robot's file holds them."""
     moving = {*robot.joints, *robot.followers, *robot.springs}
-    held = {
-        name: robot.held_position(name)
-        for name in robot.description.joints
-        if name not in moving and isinstance(places.get(name), float)
-    }
-    return [
-        f"joint {quoted(name)} is at {places[name]:.4g}, and the robot's file holds it at {at:.4g}"
-        for name, at in held.items()
-        if abs(places[name] - at) > _AT_START  # pyright: ignore[reportOperatorIssue]
-    ]
+    words = list[str]()
+    for name in robot.description.joints:
+        place = places.get(name)
+        if name in moving or place is None or isinstance(place, Following):
+            continue
+        held = robot.held_position(name)
+        if abs(place - held) > _AT_START:
+            words.append(
+                f"joint {quoted(name)} is at {place:.4g}, and the robot's file holds it at "
+                f"{held:.4g}"
+            )
+    return words
 
 
 def _all_joints(
@@ -337,11 +339,11 @@ def _all_joints(
     for order, values in enumerate(moving):
         columns = dict(zip(robot.joints, values.T))
         for name, other in others.items():
-            if isinstance(other, float):
-                columns[name] = np.full(len(values), 0.0 if order else other)
-            else:
+            if isinstance(other, Following):
                 offset = 0.0 if order else other.offset
                 columns[name] = other.multiplier * columns[other.leader] + offset
+            else:
+                columns[name] = np.full(len(values), 0.0 if order else other)
         orders.append(np.column_stack([columns[name] for name in table.joints]))
     return orders
 
