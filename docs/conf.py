@@ -48,6 +48,7 @@ include_patterns = [
     "docs/**",
     "notebooks/*.ipynb",
     "notebooks/README.md",
+    "ros/quietarm_moveit/README.md",
     "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",

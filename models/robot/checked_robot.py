@@ -215,16 +215,18 @@ class CheckedRobot(MovingRobot):
     def _check_base(self) -> None:
         if self.base is None:
             return
-        stiffness = tuple(
-            positive("stiffness of the base", x, "N m/rad")
-            for x in _pair_of("stiffness", self.base.stiffness)
-        )
-        damping = tuple(
-            not_negative("damping of the base", x, "N m s/rad")
-            for x in _pair_of("damping", self.base.damping)
-        )
+        given = _about_axes("stiffness", self.base.stiffness, 2)
+        stiffness = tuple(positive("stiffness of the base", x, "N m/rad") for x in given)
+        damps = self.base.damping if np.any(self.base.damping) else 0.0
+        given = _about_axes("damping", damps, len(stiffness))
+        if len(given) != len(stiffness):
+            raise ValueError(
+                f"damping of the base has {len(given)} numbers and its stiffness {len(stiffness)}; "
+                "give one of each axis"
+            )
+        damping = tuple(not_negative("damping of the base", x, "N m s/rad") for x in given)
         height = not_negative("height of the base", self.base.height, "m")
-        self._set("base", Base((stiffness[0], stiffness[1]), (damping[0], damping[1]), height))
+        self._set("base", Base(stiffness, damping, height))
 
     def _check_measured(self) -> None:
         if self.measured is None:
@@ -291,11 +293,13 @@ def _vector(name: str, value: Any) -> tuple[float, float, float]:
     return (entries[0], entries[1], entries[2])
 
 
-def _pair_of(name: str, value: Any) -> tuple[Any, Any]:
-    entries = (value, value) if isinstance(value, int | float) else tuple(value)
-    if len(entries) != 2:
+def _about_axes(name: str, value: Any, count: int) -> tuple[Any, ...]:
+    """Two numbers about x and y, or three; one is that of all axes of a count."""
+    entries = (value,) * count if isinstance(value, int | float) else tuple(value)
+    if len(entries) not in (2, 3):
         raise ValueError(
-            f"{name} of the base has {len(entries)} numbers; give one, or two, about x and about y"
+            f"{name} of the base has {len(entries)} numbers; give one, or two, about x and about "
+            "y, or three, about z as well"
         )
     return entries
 

@@ -16,6 +16,7 @@ import numpy as np
 from quietarm.interrupts import interruptible
 from quietarm.models.drawing import Body
 from quietarm.models.joint_motion import (
+    ROTARY,
     Array,
     Expression,
     JointMotion,
@@ -34,6 +35,7 @@ from quietarm.models.robot.checked_robot import CheckedRobot
 from quietarm.models.robot.dynamics.coulomb_friction import coulomb_torques
 from quietarm.models.robot.dynamics.robot_parts import Limits
 from quietarm.models.robot.elastic.beam import Beam
+from quietarm.models.robot.mujoco_model import entries_of_mujoco
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
 from quietarm.models.robot.on_path.path_tables import (
@@ -134,6 +136,30 @@ class Robot(CheckedRobot):
         """
         return cls(**read_robot(path))
 
+    @classmethod
+    @interruptible
+    def from_mujoco(cls, model: Any, **others: Any) -> Robot:
+        """Read a model of MuJoCo, mujoco.MjModel.from_xml_path("robot.xml"): its tree of bodies.
+
+        Its joints with `stiffness` are springs, its `armature` is inertia of rotors, `damping` and
+        `frictionloss` are friction; a joint that an equality ties to another follows it. Actuators,
+        geometry and contacts are not used.
+
+        Parameters
+        ----------
+        model : mujoco.MjModel
+            As MuJoCo has compiled it, of MJCF or of URDF.
+        **others : Any
+            Further arguments of `Robot`, such as joints, beam and tip; one that the model has as
+            well is in its place.
+
+        Raises
+        ------
+        ValueError
+            When it has a free or a ball joint, a loop, or tendons with springs; as of `Robot`.
+        """
+        return cls(**(entries_of_mujoco(model) | others))
+
     @interruptible
     def along(self, path: GeometricPath) -> RobotOnPath:
         """The robot on a path, a plant of whose `target` 1.0 is the end of the path.
@@ -225,7 +251,23 @@ class Robot(CheckedRobot):
                     f"path; its range is {least:g} to {most:g}{self._with_followers(name)}, give a "
                     "path within it"
                 )
-        return path
+        words = tuple(words for words in self._long_turns(path) if words not in path.remarks)
+        return replace(path, remarks=(*path.remarks, *words)) if words else path
+
+    def _long_turns(self, path: GeometricPath) -> Iterable[str]:
+        """Words on joints without ends that go the long way round between two waypoints."""
+        for name, column in zip(self.joints, path.waypoints.T):
+            if not self.description.joints[name].endless or self.kind_of(name) != ROTARY:
+                continue
+            steps = np.diff(column)
+            at = int(np.abs(steps).argmax()) if len(steps) else 0
+            if len(steps) and abs(steps[at]) > math.pi:
+                short = steps[at] - math.copysign(math.tau, steps[at])
+                yield (
+                    f"joint {quoted(name)}, which has no ends, turns by {steps[at]:.4g} rad "
+                    f"between waypoints {at + 1} and {at + 2}; for the short way of {short:.4g} "
+                    f"rad give {column[at] + short:.5g} in place of {column[at + 1]:.5g}"
+                )
 
     def check_positions(self, points: Array) -> None:
         """Refuse positions of the driven joints, a row a point, beyond the range of one."""

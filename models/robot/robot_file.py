@@ -196,13 +196,15 @@ def _without_limits(driven: Collection[str], limits: ByQuantity) -> Iterator[Not
 def _beam(entry: Any, what: str) -> Beam:
     units = {
         "length": "m", "width": "m", "height": "m", "youngs_modulus": "Pa", "density": "kg/m^3",
-        "tip_mass": "kg", "damping": "-", "mass_per_length": "kg/m",
+        "tip_mass": "kg", "damping": "-", "mass_per_length": "kg/m", "roll": "rad",
     }  # fmt: skip
     readers: dict[str, Read] = {name: _quantity(unit) for name, unit in units.items()}
     readers |= {
         "at": _name,
         "pieces": lambda value, _: value,
         "bending_stiffness": partial(_several, unit="N m^2"),
+        "direction": partial(_several, unit="-"),
+        "offset": partial(_several, unit="m"),
     }
     given = _table(entry, what, readers)
     for name in ("at", "length"):

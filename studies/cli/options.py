@@ -182,15 +182,26 @@ WAYPOINTS = option("--path", type=INPUT,
 PATH_TOLERANCE = option("--path-tolerance", metavar="ANGLE",
                         help="How far a joint may be from the straight lines between the points of "
                         "--path, 0.5deg or 2mm; the path is refined until it holds.")  # fmt: skip
+SOME_WAYPOINTS = option(
+    "--waypoints", metavar="FIRST:LAST", help="Of the points of --path only these, counted from 1: "
+    "--waypoints 2:4 begins at the second, where a move before has stopped.",
+)  # fmt: skip
+BLEND = option(
+    "--blend", metavar="LENGTH[,...]", help="Go straight between the points of --path, and round "
+    "where the tip is within this radius of one: 50mm, or one of each point but the first and the "
+    "last.",
+)  # fmt: skip
 LINE = (
     option("--line-to", metavar="X,Y,Z[,R,P,Y]", help="Of a robot: a straight line in space from "
            "--start to this place of a link, 400mm,200mm,0.5, or with roll, pitch and yaw to turn "
            "to; by inverse kinematics."),
     option("--line-by", metavar="X,Y,Z", help="The same by its way: --line-by=0,0,-200mm."),
+    option("--free-orientation", is_flag=True, help="The line is by the place of the link alone, "
+           "which turns as its joints like."),
     option("--link", metavar="NAME", help="The link on the line. [default: the one that carries "
            "the beam, or else the tip]"),
 )  # fmt: skip
-ROBOT_PATH = (WAYPOINTS, PATH_TOLERANCE, *LINE)
+ROBOT_PATH = (WAYPOINTS, SOME_WAYPOINTS, BLEND, PATH_TOLERANCE, *LINE)
 """In place of a straight path in joint space."""
 ENDS = (
     option("--start", default="0", metavar="ANGLE", help="Joint angle at the start; of a robot one "

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
 from quietarm.models.joint_motion import LINEAR, MIXED, kind_of_joints
+from quietarm.models.robot.path.joint_table import read_joint_table
 from quietarm.models.robot.path.straight_line import off_straight
 from quietarm.models.robot.urdf.read_urdf import PRISMATIC
 from quietarm.models.units import is_number, parse_quantity
@@ -15,9 +17,9 @@ from quietarm.views.report.words import counted
 if TYPE_CHECKING:
     from quietarm.studies.cli.given import Given
 
-LINE_NAMES = ("line_to", "line_by", "link")
+LINE_NAMES = ("line_to", "line_by", "free_orientation", "link")
 """Options of a straight line in space."""
-PATH_NAMES = (*LINE_NAMES, "path_tolerance")
+PATH_NAMES = (*LINE_NAMES, "path_tolerance", "waypoints", "blend")
 """Options of a robot's path alone."""
 OF_ROBOT = "is for a robot, whose file is PLANT, as ur5.yaml"
 
@@ -41,15 +43,43 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
     """
     if given.path is not None:
         given.refuse(["start", "target", *LINE_NAMES], "is in the file of --path")
-        return GeometricPath.load(given.path, within=_tolerance(given, robot))
-    given.refuse(["path_tolerance"], "is for the waypoints of --path")
+        if given.blend is not None:
+            return _blended(given, robot)
+        tolerance = _tolerance(given, robot)
+        return GeometricPath.load(given.path, within=tolerance, waypoints=_waypoints(given))
+    given.refuse(["path_tolerance", "waypoints", "blend"], "is for the waypoints of --path")
     if given.line_to is not None or given.line_by is not None:
         return _line_in_space(given, robot)
-    given.refuse(["link"], "is for --line-to and --line-by")
+    given.refuse(["free_orientation", "link"], "is for --line-to and --line-by")
     if not (given.typed("start") and given.typed("target")):
         return None
     ends = [_positions(given.start, "--start", robot), _positions(given.target, "--target", robot)]
     return GeometricPath.line(*ends, joints=robot.joints)
+
+
+def _waypoints(given: Given) -> tuple[int, int] | None:
+    """The first and the last point of --path that were typed."""
+    text: str | None = given.waypoints
+    if text is None:
+        return None
+    words = text.split(":")
+    if len(words) != 2 or not all(word.strip().isdecimal() for word in words):
+        raise ValueError(f"--waypoints is {quoted(text)}; give two numbers, as 2:4")
+    return int(words[0]), int(words[1])
+
+
+def _blended(given: Given, robot: Robot) -> GeometricPath:
+    """Straight between the points of --path, with round corners."""
+    given.refuse(["path_tolerance"], "is for a spline, and --blend states how round corners are")
+    words = given.blend.split(",")
+    radii = [parse_quantity(word, "m", "a radius of --blend") for word in words]
+    table = read_joint_table(given.path).between(_waypoints(given))
+    radius = radii[0] if len(radii) == 1 else radii
+    try:
+        path = GeometricPath.blended(robot, table.positions, radius, joints=table.joints)
+    except ValueError as error:
+        raise ValueError(f"path {given.path}: {error}") from None
+    return replace(path, remarks=(*table.remarks, *path.remarks))
 
 
 def _tolerance(given: Given, robot: Robot) -> float | None:
@@ -83,6 +113,7 @@ def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
         to=_numbers(given.line_to, "--line-to", (3, 6), "x,y,z or x,y,z,roll,pitch,yaw"),
         by=_numbers(given.line_by, "--line-by", (3,), "x,y,z"),
         link=given.link,
+        turns=not given.free_orientation,
     )
 
 

@@ -63,6 +63,14 @@ class FlexibleRobot:
             self.stiffness[name] = stiffness
             self.damping[name] = damping
 
+    def add_fixed(self, name, parent, place, turned):
+        """A link without mass that stands in another, turned by roll, pitch and yaw."""
+        ElementTree.SubElement(self.root, "link", name=name)
+        joint = ElementTree.SubElement(self.root, "joint", name=f"to_{name}", type="fixed")
+        ElementTree.SubElement(joint, "parent", link=parent)
+        ElementTree.SubElement(joint, "child", link=name)
+        ElementTree.SubElement(joint, "origin", xyz=_text(place), rpy=_text(turned))
+
     def add_bar(
         self, at, length, width, height, youngs_modulus, density, tip_mass, damping, pieces=12
     ):

@@ -2,50 +2,73 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from quietarm.models import Plant
 from quietarm.ocp import Plan
 from quietarm.ocp.escapes import yaml_string
 from quietarm.views.formats.between_rows import note_of_points
-from quietarm.views.formats.export_format import ExportFormat, ExportSetting
+from quietarm.views.formats.export_format import (
+    PLAN,
+    SEVERAL,
+    Answers,
+    Exported,
+    ExportFormat,
+    ExportSetting,
+    Progress,
+    values_of,
+)
 from quietarm.views.formats.row_settings import RATE
-from quietarm.views.formats.trajectory_points import THIN, left_between, times_of_points
+from quietarm.views.formats.trajectory_points import (
+    PAUSE,
+    THIN,
+    Points,
+    left_after_each,
+    left_between,
+    points_of,
+    points_of_several,
+    times_of_points,
+)
 from quietarm.views.report.templates import templates
 
 
 class RosTrajectory(ExportFormat):
-    """Positions, velocities and accelerations of all joints."""
+    """Positions, velocities and accelerations of all joints, of one move or several in a row."""
 
     name = "ros"
     endings = (".yaml", ".yml")
     meaning = "a JointTrajectory of ROS 2"
-    settings = (RATE, THIN, ExportSetting("joint", "joint", "The joint's name."))
+    takes = (PLAN, SEVERAL)
+    settings = (RATE, THIN, PAUSE, ExportSetting("joint", "joint", "The joint's name."))
     to_stdout = True
 
-    def content(
-        self, plan: Plan, *args: Any, rate: float, thin: float | None = None, joint: str = "joint"
-    ) -> str:
+    def export(self, answers: Answers, path: Path, report: Progress, **settings: Any) -> Exported:
+        """One message, and what its points leave."""
+        plans = values_of(answers)
+        if len(plans) == 1:
+            return super().export(answers, path, report, **settings)
+        several, ends = points_of_several(
+            plans, settings["rate"], settings["thin"], settings["pause"]
+        )
+        note = left_after_each(plans, several, ends, settings["pause"])
+        return Exported({path: self.message(plans[0].task.plant, several, **settings)}, [note])
+
+    def content(self, plan: Plan, *args: Any, **settings: Any) -> str:
         """A single joint has the name that is given; those of a robot the plant's."""
-        if thin is None:
-            motion = plan.commanded(rate)
-        else:
-            motion = plan.sampled(times_of_points(plan, rate, thin))
-        orders = [
-            np.column_stack([joint[order] for joint in motion.sample.joints]).tolist()
-            for order in range(3)
-        ]
-        points = [
+        points = points_of(plan, settings["rate"], settings.get("thin"))
+        return self.message(plan.task.plant, points, **settings)
+
+    def message(self, plant: Plant, points: Points, *, joint: str = "joint", **others: Any) -> str:
+        """The message with the points."""
+        rows = [
             (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in moving])
-            for time, *moving in zip(motion.time, *orders)
+            for time, *moving in zip(points.times, *(order.tolist() for order in points[1:]))
         ]
-        joint_names = plan.task.plant.joint_names
-        names = joint_names if plan.task.plant.has_path else (joint,)
+        names = plant.joint_names if plant.has_path else (joint,)
         texts = templates(keep_trailing_newline=True)
-        scalars = [yaml_string(name) for name in names]
         return texts.get_template("views/formats/templates/move.yaml").render(
-            joints=scalars, points=points
+            joints=[yaml_string(name) for name in names], points=rows
         )
 
     def note(

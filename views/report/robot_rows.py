@@ -7,7 +7,7 @@ from math import tau
 
 import numpy as np
 
-from quietarm.models import GeometricPath, Robot
+from quietarm.models import Beam, GeometricPath, Robot
 from quietarm.models.dimensions import DAMPING, EFFORT, INERTIA, STIFFNESS, WAY, Unit, words_of
 from quietarm.models.joint_motion import kind_of_joints
 from quietarm.models.robot.dynamics.modes import modes_at, sag_at
@@ -62,12 +62,25 @@ def _mass_rows(robot: Robot) -> list[Row]:
         rows.append(
             (
                 "beam",
-                f"{beam.length:g} m at {beam.at}, {mass:.4g} kg and {beam.tip_mass:.4g} kg at its "
-                f"end, {counted(beam.count, 'hinge')} in each direction; clamped, without gravity, "
-                f"it swings at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y",
+                f"{beam.length:g} m at {beam.at}{_place_words(beam)}, {mass:.4g} kg and "
+                f"{beam.tip_mass:.4g} kg at its end, {counted(beam.count, 'hinge')} in each "
+                f"direction; clamped, without gravity, it swings "
+                f"at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y",
             )
         )
     return rows
+
+
+def _place_words(beam: Beam) -> str:
+    """Where it is clamped and lies, unless it lies along z from the link's origin."""
+    words = ""
+    if any(beam.offset):
+        words += f" [{', '.join(f'{value:g}' for value in beam.offset)}] m"
+    if beam.direction != (0.0, 0.0, 1.0):
+        words += f" along [{', '.join(f'{value:g}' for value in beam.direction)}]"
+    if beam.roll:
+        words += f", turned by {beam.roll:.4g} rad about itself"
+    return words
 
 
 def _joint_rows(robot: Robot) -> list[Row]:

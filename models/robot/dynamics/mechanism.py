@@ -26,7 +26,7 @@ BEAM_END = "beam end"
 _X = np.array([1.0, 0.0, 0.0])
 _Y = np.array([0.0, 1.0, 0.0])
 _ALONG = np.array([0.0, 0.0, 1.0])
-"""The beam in the frame of its link."""
+"""The beam in its own frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,15 +186,17 @@ def _at_the_motors(robot: RobotParts, values: Mapping[str, float]) -> Array:
 
 
 def _base(tree: _Tree, robot: RobotParts) -> tuple[int, Frame]:
-    """Frame of the root link: on the ground, or on a pedestal that rocks about x and y."""
+    """Frame of the root link: on the ground, or on a pedestal that rocks, and maybe twists."""
     if robot.base is None:
         return GROUND, Frame()
     pivot = Frame(origin=np.array([0.0, 0.0, -robot.base.height]))
-    stiffness = robot.base.stiffness
-    damping = robot.base.damping
-    about_x = tree.add("base about x", (GROUND, pivot), _X, spring=(stiffness[0], damping[0]))
-    about_y = tree.add("base about y", (about_x, Frame()), _Y, spring=(stiffness[1], damping[1]))
-    return about_y, Frame(origin=-pivot.origin)
+    place = (GROUND, pivot)
+    for name, axis, *spring in zip(
+        "xyz", (_X, _Y, _ALONG), robot.base.stiffness, robot.base.damping
+    ):
+        pair = (spring[0], spring[1])
+        place = (tree.add(f"base about {name}", place, axis, spring=pair), Frame())
+    return place[0], Frame(origin=-pivot.origin)
 
 
 def _add_link(tree: _Tree, urdf: Urdf, link: str, place: tuple[int, Frame]) -> None:
@@ -243,7 +245,8 @@ def _moved(joint: UrdfJoint, position: float) -> Frame:
 
 def _add_beam(tree: _Tree, beam: Beam) -> None:
     """The pieces of a beam, on two hinges each."""
-    place = tree.links[beam.at]
+    link, at_link = tree.links[beam.at]
+    place = (link, at_link @ beam.frame)
     pieces = beam.bodies
     damping_time = beam.damping_time
     tree.load(place, pieces[0])

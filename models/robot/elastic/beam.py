@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ from numpy.polynomial.legendre import legvander
 
 from quietarm.models.beam_modes import beam_modes
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import not_negative, positive, quoted, whole
+from quietarm.models.number_checks import finite, not_negative, positive, quoted, whole
 from quietarm.models.robot.elastic.hinges import (
     Hinges,
     exact_hinges,
@@ -25,6 +25,7 @@ from quietarm.models.robot.elastic.hinges import (
     masses_of_chain,
 )
 from quietarm.models.robot.elastic.spectra import spectrum
+from quietarm.models.robot.frames import Frame, rotation_about
 from quietarm.models.robot.urdf.read_urdf import Inertia
 
 USUAL_HINGES = 5
@@ -35,9 +36,15 @@ MIDDLE = "middle"
 """Where hinges are: such that frequencies are exact, or in the middle of equal parts."""
 
 
+_ALONG_Z = (0.0, 0.0, 1.0)
+_NOWHERE = (0.0, 0.0, 0.0)
+_IF_STATED = {"if_stated": True}
+_LEAST_DIRECTION = 1e-9
+
+
 @dataclass(frozen=True)
 class Beam:
-    """A beam that is clamped at a link's frame, and lies along its z axis.
+    """A beam that is clamped at a link, by default at its origin and along its z axis.
 
     Parameters
     ----------
@@ -64,6 +71,14 @@ class Beam:
     hinges : str
         Where they are: `exact`, or `middle`, as version 2.0.0 had them, in the middle of equal
         parts, which with six pieces are too stiff by 0.4 % in the first frequency.
+    direction : (float, float, float)
+        Along which it lies, in the link's frame, of any length but 0. The beam is turned there from
+        the link's z axis by the shortest turn, and takes its section along: one along x has its
+        width along y and its height along z.
+    offset : (float, float, float)
+        Where it is clamped, in the link's frame [m].
+    roll : float
+        By which it is turned about itself besides [rad].
 
     Raises
     ------
@@ -83,6 +98,9 @@ class Beam:
     bending_stiffness: tuple[float, float] | None = None
     mass_per_length: float | None = None
     hinges: Literal["exact", "middle"] = EXACT
+    direction: tuple[float, float, float] = field(default=_ALONG_Z, metadata=_IF_STATED)
+    offset: tuple[float, float, float] = field(default=_NOWHERE, metadata=_IF_STATED)
+    roll: float = field(default=0.0, metadata=_IF_STATED)
 
     def __post_init__(self) -> None:
         if not isinstance(self.at, str) or not self.at:
@@ -135,6 +153,18 @@ class Beam:
         if self.pieces is not None:
             pieces = whole("pieces of the beam", self.pieces, 1, MOST_PIECES)
             object.__setattr__(self, "pieces", pieces)
+        self._check_place()
+
+    def _check_place(self) -> None:
+        """Direction, offset and roll are numbers, and the direction is one."""
+        for name, unit in (("direction", ""), ("offset", "m")):
+            object.__setattr__(self, name, _vector(name, getattr(self, name), unit))
+        if np.linalg.norm(self.direction) < _LEAST_DIRECTION:
+            raise ValueError(
+                f"direction of the beam is {list(self.direction)}, none; give one in the frame of "
+                "the link, as [1, 0, 0]"
+            )
+        object.__setattr__(self, "roll", finite("roll of the beam", self.roll, "rad"))
 
     @classmethod
     def of_saved(cls, entries: Any) -> Any:
@@ -142,6 +172,12 @@ class Beam:
         if isinstance(entries, dict) and "hinges" not in entries:
             return {**entries, "hinges": MIDDLE}
         return entries
+
+    @property
+    def frame(self) -> Frame:
+        """Frame of the beam in that of its link: it lies along z."""
+        rolled = rotation_about(np.array(_ALONG_Z), self.roll)
+        return Frame(_shortest_turn(np.array(self.direction)) @ rolled, np.array(self.offset))
 
     @property
     def stiffness(self) -> tuple[float, float]:
@@ -292,6 +328,28 @@ def _size(words: str, value: float, unit: str) -> float:
     if number < least:
         raise ValueError(f"{words} is {number:g} {unit}; give at least {least:g}")
     return number
+
+
+def _vector(name: str, values: Any, unit: str) -> tuple[float, float, float]:
+    """Three finite numbers in the frame of the link."""
+    words = f"{name} of the beam"
+    numbers = [] if isinstance(values, str) or np.ndim(values) != 1 else list(values)
+    if len(numbers) != 3:
+        raise ValueError(f"{words} is {quoted(values)}; give three numbers, as [1, 0, 0]")
+    x, y, z = (finite(words, value, unit, _MOST) for value in numbers)
+    return (x, y, z)
+
+
+_MOST = 1e3
+"""Of a number of direction and offset [m]: beyond, a unit was mistaken."""
+
+
+def _shortest_turn(direction: Array) -> Array:
+    """Return the rotation that turns z into a direction; of -z about x."""
+    x, y, z = direction / np.linalg.norm(direction)
+    across = math.hypot(x, y)
+    axis = np.array([-y, x, 0.0]) / across if across > 0 else np.array([1.0, 0.0, 0.0])
+    return rotation_about(axis, math.atan2(across, z))
 
 
 def _pair(stiffness: float | Sequence[float]) -> tuple[float, float]:

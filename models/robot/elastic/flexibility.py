@@ -17,11 +17,12 @@ class Spring:
 class Base:
     """A pedestal that rocks about x and y of the root link, at a height below it [m].
 
-    Stiffness [N m/rad] and damping [N m s/rad] about either axis.
+    Stiffness [N m/rad] and damping [N m s/rad] about these axes; a third about z, by which it
+    twists.
     """
 
-    stiffness: tuple[float, float]
-    damping: tuple[float, float] = (0.0, 0.0)
+    stiffness: tuple[float, ...]
+    damping: tuple[float, ...] = (0.0, 0.0)
     height: float = 0.0
 
 

@@ -14,17 +14,19 @@ from numpy.typing import ArrayLike
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
 from quietarm.models.number_checks import listed, positive, quoted
-from quietarm.models.robot.dynamics.kinematics import Pose
+from quietarm.models.robot.dynamics.kinematics import Kinematics, Pose
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.path.joint_table import read_joint_table
 from quietarm.models.robot.path.piecewise import NoFitError, Piecewise, fit, interpolate
 from quietarm.models.robot.path.straight_line import straight_positions
 from quietarm.models.robot.path.straight_lines import (
     BACK,
+    blends_within,
     fewest_within,
     nearest_on_lines,
     rounded_lines,
     vertices_within,
+    with_round_corners,
     without_spurs,
 )
 
@@ -56,6 +58,8 @@ _WITHIN = 0.9
 _SHARES = (0.02, 0.05, 0.1, 0.25)
 """Of a tolerance, by which the lines that are kept may be others than those of all points."""
 _MOST_LINES = 400
+_OF_A_POSE = 6
+"""Numbers of a place and an orientation."""
 
 
 class _NotSmoothError(ValueError):
@@ -143,6 +147,7 @@ class GeometricPath:
         to: ArrayLike | None = None,
         by: ArrayLike | None = None,
         link: str | None = None,
+        turns: bool = True,
     ) -> GeometricPath:
         """Straight in space for a link of the robot that does not bend, by inverse kinematics.
 
@@ -162,6 +167,9 @@ class GeometricPath:
             In place of `to`: the way x, y, z [m], along the ground's axes; the link does not turn.
         link : str, optional
             By default the one that carries the beam, or else the tip.
+        turns : bool
+            False lets the link turn as it likes: the line is by its place alone, by the shortest
+            steps of the joints.
 
         Raises
         ------
@@ -182,8 +190,13 @@ class GeometricPath:
             end = before.moved(_numbers("by", by, (3,), "x, y, z [m]"))
         else:
             pose = _numbers("to", to, (3, 6), "x, y, z [m], or these and roll, pitch, yaw [rad]")
+            if len(pose) == _OF_A_POSE and not turns:
+                raise ValueError(
+                    "to of the line has roll, pitch and yaw, and its orientation is free; give x, "
+                    "y, z alone"
+                )
             end = Pose.of(pose, before)
-        return cls.of(straight_positions(kinematics, positions, end), joints=robot.joints)
+        return cls.of(straight_positions(kinematics, positions, end, turns), joints=robot.joints)
 
     @classmethod
     def through(
@@ -267,7 +280,12 @@ class GeometricPath:
     @classmethod
     @interruptible
     def load(
-        cls, path: str | Path, *, degree: int = 5, within: float | None = None
+        cls,
+        path: str | Path,
+        *,
+        degree: int = 5,
+        within: float | None = None,
+        waypoints: tuple[int, int] | None = None,
     ) -> GeometricPath:
         """Through the points of a file: csv, or a trajectory_msgs/JointTrajectory as YAML.
 
@@ -280,8 +298,10 @@ class GeometricPath:
         ----------
         within : float, optional
             As of `within`: how far the path may be from straight lines between the points.
+        waypoints : (int, int), optional
+            The first and the last of the file's points that it takes, counted from 1.
         """
-        table = read_joint_table(path)
+        table = read_joint_table(path).between(waypoints)
         try:
             if within is not None or len(table.positions) > MOST_WAYPOINTS:
                 through = cls.within(
@@ -333,6 +353,61 @@ class GeometricPath:
         words = f"{words.format(given)}, within {tolerance:.3g} rad (or m) of the lines between all"
         lines = tuple(map(tuple, _few_lines(points, tolerance).tolist()))
         return replace(path, lines=lines, remarks=(*remarks, words))
+
+    @classmethod
+    def blended(
+        cls,
+        robot: MovingRobot,
+        waypoints: ArrayLike,
+        radius: float | Sequence[float],
+        *,
+        joints: Sequence[str] = (),
+    ) -> GeometricPath:
+        """Straight from waypoint to waypoint in joint space, round where the tip is near one.
+
+        A corner is round from where the tip comes within the radius of its place at the waypoint to
+        where it leaves that, or between the halves of the lines where these are nearer. Three
+        derivatives are continuous. `remarks` has at what distance the tip passes each waypoint.
+
+        Parameters
+        ----------
+        robot : Robot
+            Whose tip is meant, without what bends.
+        waypoints : array_like, shape (waypoints, joints)
+            [rad or m].
+        radius : float or sequence of float
+            One for all waypoints but the first and the last, or one of each [m].
+        joints : sequence of str, optional
+            The joints of the waypoints; the robot's, in its order, by default.
+
+        Raises
+        ------
+        ValueError
+            When there is no waypoint between two others, or the way turns back at one.
+        """
+        names = tuple(joints) or robot.joints
+        points = _rows(waypoints)
+        if points.shape[1] != len(names) or not {*robot.joints} <= {*names}:
+            raise ValueError(
+                f"the waypoints are of {listed(names)}, {points.shape[1]} numbers each, and the "
+                f"robot drives {listed(robot.joints)}; give a position of each"
+            )
+        points, remarks = _without_repeated(points[:, [names.index(name) for name in robot.joints]])
+        _check_turns(points)
+        radii = _radii(radius, len(points) - 2)
+        kinematics = robot.kinematics(robot.tip)
+        halves, reached = blends_within(points, lambda q: kinematics.pose(q).origin, radii)
+        rounded = with_round_corners(points, halves)
+        path = cls(*_plain(rounded), robot.joints)
+        passed = tuple(
+            f"waypoint {number} is passed at {1e3 * distance:.2g} mm, blended within "
+            f"{1e3 * within:.3g} mm"
+            for number, (distance, within) in enumerate(
+                zip(_passed(rounded, kinematics, points, halves), reached), start=2
+            )
+        )
+        lines = tuple(map(tuple, points.tolist()))
+        return replace(path, lines=lines, remarks=(*remarks, *passed))
 
     @classmethod
     def _near(
@@ -421,11 +496,22 @@ class GeometricPath:
         positions, nearest = self.beside_lines
         return np.abs(positions - nearest).max(axis=0)
 
+    @property
+    def _is_spline(self) -> bool:
+        """Return whether its knots are waypoints, all or some of those that it was made of."""
+        return len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
+
+    @property
+    def waypoints(self) -> Array:
+        """Waypoints of a spline through all of them [rad or m]; no rows of other paths."""
+        if not self._is_spline or self.lines:
+            return np.zeros((0, self.count))
+        return self.inner(np.array(self.knots))
+
     @cached_property
     def beside_lines(self) -> tuple[Array, Array]:
         """Positions along it, and the nearest points of the lines between its waypoints."""
-        of_spline = len(self.knots) > 2 and len(self.coefficients[0][0]) <= max(_DEGREES) + 1
-        if not of_spline and not self.lines:
+        if not self._is_spline and not self.lines:
             return np.zeros((1, self.count)), np.zeros((1, self.count))
         knots = np.array(self.knots)
         samples = max(_SAMPLES_OF_PIECE, _SAMPLES // (len(knots) - 1))
@@ -520,6 +606,36 @@ def _without_repeated(points: Array, share: float = _NEAR) -> tuple[Array, tuple
             "moves a joint"
         )
     return points[kept], tuple(remarks)
+
+
+def _radii(radius: float | Sequence[float], corners: int) -> Array:
+    """A radius of each waypoint between two others [m]."""
+    if corners < 1:
+        raise ValueError(
+            "a blend is at a waypoint between two others, and there is none; give three waypoints "
+            "or more"
+        )
+    several = [radius] * corners if np.ndim(radius) == 0 else list(radius)  # pyright: ignore[reportArgumentType]
+    if len(several) != corners:
+        raise ValueError(
+            f"there are {len(several)} radii and {corners} waypoints between the first and the "
+            "last; give one for all, or one of each"
+        )
+    return np.array([positive("radius of a blend", value, "m") for value in several])
+
+
+def _passed(path: Piecewise, kinematics: Kinematics, points: Array, halves: Array) -> list[float]:
+    """Return how near the tip passes its place at each corner [m]."""
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    total = float(lengths.sum())
+    distances = list[float]()
+    for corner, at, half in zip(points[1:-1], np.cumsum(lengths), halves):
+        places = (at + half * np.linspace(-1.0, 1.0, 41)) / total
+        centre = kinematics.pose(corner).origin
+        distances.append(
+            min(float(np.linalg.norm(kinematics.pose(q).origin - centre)) for q in path(places))
+        )
+    return distances
 
 
 def _check_turns(points: Array) -> None:

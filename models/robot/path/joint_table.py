@@ -43,6 +43,69 @@ class JointTable:
     accelerations: Array | None = None
     remarks: tuple[str, ...] = ()
 
+    def between(self, points: tuple[int, int] | None) -> JointTable:
+        """The table from one point to another, counted from 1; all of it without these.
+
+        Raises
+        ------
+        ValueError
+            When they are no points of it, or not two.
+        """
+        if points is None:
+            return self
+        first, last = points
+        if not 1 <= first < last <= len(self.positions):
+            raise ValueError(
+                f"waypoints {first}:{last} are none of {len(self.positions)}; give the numbers of "
+                "the first and the last, as 2:4"
+            )
+        rows = slice(first - 1, last)
+        times, velocities, accelerations = (
+            None if values is None else values[rows]
+            for values in (self.times, self.velocities, self.accelerations)
+        )
+        return JointTable(
+            self.joints, self.positions[rows], times, velocities, accelerations, self.remarks
+        )
+
+    @property
+    def without_repeated(self) -> JointTable:
+        """The table without rows that repeat the time and the positions of the row before them.
+
+        MoveIt gives such rows at the start where a planner repeats its first state.
+        """
+        times = self.times
+        if times is None:
+            return self
+        nearest = np.abs(np.diff(self.positions, axis=0)).max(axis=1, initial=0.0)
+        repeated = np.append(False, (np.diff(times) == 0) & (nearest <= _AS_FAR))
+        if not repeated.any():
+            return self
+        rows = np.flatnonzero(repeated) + 1
+        words = " and ".join(
+            f"points {row - 1} and {row} are at one time and place and taken as one"
+            for row in rows[:_NAMED].tolist()
+        )
+        more = f", and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
+        kept = ~repeated
+        velocities, accelerations = (
+            None if rows is None else rows[kept] for rows in (self.velocities, self.accelerations)
+        )
+        return JointTable(
+            self.joints,
+            self.positions[kept],
+            times[kept],
+            velocities,
+            accelerations,
+            (*self.remarks, f"{words}{more}"),
+        )
+
+
+_AS_FAR = 1e-9
+"""By which positions of one place may differ: a file's rounding [rad or m]."""
+_NAMED = 3
+"""Rows that repeat others, of which each is named."""
+
 
 def read_joint_table(path: str | Path) -> JointTable:
     """The points of a file: csv, or a JointTrajectory in YAML or a message that has one within.
@@ -53,33 +116,37 @@ def read_joint_table(path: str | Path) -> JointTable:
         When it has none, several, or a point without positions of all joints.
     """
     if Path(path).suffix.lower() in _MESSAGES:
-        return _trajectory_of(path)
+        return table_of_message(read_yaml(path, "path"), f"path {path}")
     return _table_of(path)
 
 
-def _trajectory_of(path: str | Path) -> JointTable:
-    """The JointTrajectory in a message, however deep."""
-    messages = list(_trajectories_in(read_yaml(path, "path")))
+def table_of_message(message: object, what: str) -> JointTable:
+    """The points of the JointTrajectory in a message, however deep; its name is for errors.
+
+    Raises
+    ------
+    ValueError
+        As of `read_joint_table`.
+    """
+    messages = list(_trajectories_in(message))
     filled = [message for message in messages if message["joint_names"] or message["points"]]
     positioned = [message for message in filled if not _is_in_space(message)]
     if not positioned:
         raise ValueError(
-            f"path {path} is no JointTrajectory; give one with joint_names and points, or a csv"
+            f"{what} is no JointTrajectory; give one with joint_names and points, or a csv"
         )
     if len(positioned) > 1:
-        raise ValueError(
-            f"path {path} has {len(positioned)} trajectories; give a file of one of them"
-        )
+        raise ValueError(f"{what} has {len(positioned)} trajectories; give a file of one of them")
     (trajectory,) = positioned
     points = trajectory["points"]
     names = tuple(map(str, trajectory["joint_names"] or ()))
     if _CUT_OFF in (*(points or ()), *names):
         raise ValueError(
-            f"path {path} is cut off at '...'; write it whole, by ros2 topic echo --full-length"
+            f"{what} is cut off at '...'; write it whole, by ros2 topic echo --full-length"
         )
     positions = _entries(points, "positions")
-    if positions is None:
-        raise ValueError(f"path {path} has a point without positions of all joints; write it again")
+    if positions is None or positions.ndim != 2:
+        raise ValueError(f"{what} has a point without positions of all joints; write it again")
     others = {entry for point in points for entry, value in point.items() if value}
     unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
     remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from quietarm.models.joint_motion import Array
+from quietarm.models.number_checks import quoted
 from quietarm.models.robot.dynamics.kinematics import Kinematics, Pose
 from quietarm.models.robot.frames import rotation_about
 
@@ -15,12 +16,15 @@ LEAST_LENGTH = 1e-6
 """Of a line [m], or least turn [rad]."""
 
 
-def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Callable[[float], Array]:
+def straight_positions(
+    kinematics: Kinematics, start: Array, end: Pose, turns: bool = True
+) -> Callable[[float], Array]:
     """(share of a line) -> positions of the joints, along the line from where `start` is to a pose.
 
-    The link's origin goes straight, its rotation turns about one axis. A first walk finds where the
-    joints go; a polynomial of it is then the guess from which Newton's steps, the shortest that
-    there are, come to the line: so the positions are as smooth as the robot lets them be.
+    The link's origin goes straight, its rotation turns about one axis, or is free without `turns`.
+    A first walk finds where the joints go; a polynomial of it is then the guess from which Newton's
+    steps, the shortest that there are, come to the line: so the positions are as smooth as the
+    robot lets them be.
 
     Raises
     ------
@@ -28,7 +32,7 @@ def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Calla
         When the line has no length, leaves the robot's reach or meets a singular posture.
     """
     line = _Line(kinematics.pose(start), end)
-    if line.length < LEAST_LENGTH and line.angle < LEAST_LENGTH:
+    if line.length < LEAST_LENGTH and (line.angle < LEAST_LENGTH or not turns):
         raise ValueError(
             f"the line has a length of {line.length:.3g} m; give an end elsewhere than where "
             f"{kinematics.link} is at its start"
@@ -36,36 +40,95 @@ def straight_positions(kinematics: Kinematics, start: Array, end: Pose) -> Calla
     shares = np.linspace(0.0, 1.0, _STEPS + 1)
     walked = [start]
     for share in shares[1:]:
-        solution = _newton(kinematics, walked[-1], line.pose(share))
+        solution = _newton(kinematics, walked[-1], line.pose(share), turns)
         if solution is None or np.abs(solution - walked[-1]).max() > _MOST_STEP:
-            before = f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m"
-            turn = "keeps" if line.angle < LEAST_LENGTH else "turns"
-            few = len(start) < _OF_A_POSE
-            if few and _reaches(kinematics, walked[-1], line.pose(share).origin):
-                raise ValueError(
-                    f"{before} of its {line.length:.3g} m: the place is within reach, but a line "
-                    f"{turn} the link's orientation as well, which {len(start)} joints cannot do "
-                    "there; give waypoints, by --path or GeometricPath.through"
-                )
             raise ValueError(
-                f"{before} of its {line.length:.3g} m: it is out of reach with the orientation "
-                f"that a line {turn}, or the joints swing over; give another start, a nearer end, "
-                "or waypoints"
+                f"{kinematics.link} cannot follow the line beyond {share * line.length:.3g} m of "
+                f"its {line.length:.3g} m: "
+                + _what_stops(kinematics, walked[-2:], solution, line, share, turns)
             )
         walked.append(solution)
     guess = chebyshev.chebfit(2 * shares - 1, np.array(walked), _DEGREE)
 
     def positions(share: float) -> Array:
         begin = np.asarray(chebyshev.chebval(2 * share - 1, guess), float)
-        solution = _newton(kinematics, begin, line.pose(share))
+        solution = _newton(kinematics, begin, line.pose(share), turns)
         if solution is None:
             raise ValueError(
                 f"{kinematics.link} cannot follow the line at {share * line.length:.3g} m of its "
-                f"{line.length:.3g} m: the joints swing over; give another start, or waypoints"
+                f"{line.length:.3g} m: {_fastest_words(kinematics, walked)}; give "
+                "another start, or waypoints"
             )
         return solution
 
     return positions
+
+
+def _what_stops(
+    kinematics: Kinematics,
+    walked: list[Array],
+    jumped: Array | None,
+    line: _Line,
+    share: float,
+    turns: bool,
+) -> str:
+    """Words on what stops a line at a share of it: the place, the orientation or a joint.
+
+    Of what was walked it takes the last; where a step jumped, it is where to.
+    """
+    if jumped is not None:
+        return f"{_fastest_words(kinematics, [walked[-1], jumped])}; {_ELSEWHERE}"
+    pose = line.pose(share)
+    by_place = _newton(kinematics, walked[-1], pose, turns=False)
+    if by_place is None:
+        return (
+            "the place is out of reach, the link comes no nearer than "
+            f"{1e3 * _beyond(kinematics, walked[-1], pose):.2g} mm; give a nearer end or another "
+            "start"
+        )
+    if not turns or _newton(kinematics, by_place, pose) is not None:
+        return f"{_fastest_words(kinematics, walked)}; {_ELSEWHERE}"
+    axis, _ = _turn(pose.rotation.T @ kinematics.pose(by_place).rotation)
+    about = "xyz"[int(np.abs(axis).argmax())]
+    held = "keeps" if line.angle < LEAST_LENGTH else "turns"
+    joints = len(by_place)
+    few = f", for which {joints} joints are few" if joints < _OF_A_POSE else ""
+    return (
+        f"the place is within reach, but not with the orientation that a line {held}{few}: it "
+        f"would turn about {about} of the link; leave it free by --free-orientation (turns=False), "
+        "or give waypoints, by --path or GeometricPath.through"
+    )
+
+
+_ELSEWHERE = "give another start, a nearer end, or waypoints"
+
+
+def _beyond(kinematics: Kinematics, begin: Array, pose: Pose) -> float:
+    """Return how near Newton's damped steps come to the place of a pose [m]."""
+    q = begin
+    for _ in range(_MOST_NEWTON):
+        offset, slopes = kinematics.offset(q, pose)
+        squared = slopes[:3].T @ slopes[:3] + _DAMPED * np.eye(len(q))
+        q = q - np.linalg.solve(squared, slopes[:3].T @ offset[:3])
+    offset, _ = kinematics.offset(q, pose)
+    return float(np.linalg.norm(offset[:3]))
+
+
+_DAMPED = 1e-4
+"""Of a step's square [m^2]: beyond its reach a robot steps no farther than it is precise."""
+
+
+def _fastest_words(kinematics: Kinematics, walked: list[Array]) -> str:
+    """Words on the joint that goes farthest in one of the steps that were walked."""
+    steps = np.abs(np.diff(walked, axis=0)).max(axis=0) if len(walked) > 1 else np.zeros(1)
+    mechanism = kinematics.dynamics.mechanism
+    fastest = int(steps.argmax())
+    body = mechanism.bodies[mechanism.driven[fastest]]
+    unit = "m" if body.slides else "rad"
+    return (
+        f"joint {quoted(body.joint)} swings over, by {steps[fastest]:.2g} {unit} in a two "
+        "hundredth of the line"
+    )
 
 
 _STEPS = 200
@@ -124,31 +187,22 @@ def _turn(rotation: Array) -> tuple[Array, float]:
     return (vector / angle, angle) if angle > 0 else (np.array([0.0, 0.0, 1.0]), 0.0)
 
 
-def _newton(kinematics: Kinematics, begin: Array, pose: Pose) -> Array | None:
-    """Positions near some at which the link stands in a pose; None without any."""
+def _newton(kinematics: Kinematics, begin: Array, pose: Pose, turns: bool = True) -> Array | None:
+    """Positions near some at which the link stands in a pose, or at its place; None without any."""
+    rows = _ROWS if turns else _ROWS[:3]
     q = begin
     for _ in range(_MOST_NEWTON):
         offset, slopes = kinematics.offset(q, pose)
-        step, *_ = np.linalg.lstsq(slopes, offset, rcond=_RANK)
+        step, *_ = np.linalg.lstsq(slopes[rows], offset[rows], rcond=_RANK)
         q = q - step
         if np.abs(step).max() < _SETTLED:
             offset, _ = kinematics.offset(q, pose)
-            return q if np.abs(offset).max() < _ON_LINE else None
+            return q if np.abs(offset[rows]).max() < _ON_LINE else None
     return None
 
 
-def _reaches(kinematics: Kinematics, begin: Array, place: Array) -> bool:
-    """Return whether the link comes to a place from positions nearby, however it turns."""
-    q = begin
-    for _ in range(_MOST_NEWTON):
-        offset, slopes = kinematics.offset(q, Pose(np.eye(3), place))
-        step, *_ = np.linalg.lstsq(slopes[:3], offset[:3], rcond=_RANK)
-        q = q - step
-        if np.abs(offset[:3]).max() < _ON_LINE:
-            return True
-    return False
-
-
+_ROWS = [0, 1, 2, 3, 4, 5]
+"""Of an offset: place and turn."""
 _OF_A_POSE = 6
 """Joints that can put a link anywhere, in any orientation."""
 _MOST_NEWTON = 30

@@ -154,13 +154,25 @@ def rounded_lines(points: Array, tolerance: float) -> Piecewise:
     Within a tolerance of the corners, of the joints together [rad or m], and nearer where lines are
     short.
     """
-    ways = np.diff(points, axis=0)
-    lengths = np.linalg.norm(ways, axis=1)
-    directions = ways / lengths[:, None]
+    lengths, directions = _lines_of(points)
+    turns = np.linalg.norm(np.diff(directions, axis=0), axis=1)
+    wanted = tolerance / (_AT_CORNER * np.maximum(turns, 1e-12))
+    return with_round_corners(points, np.minimum(wanted, room_at_corners(lengths)))
+
+
+def room_at_corners(lengths: Array) -> Array:
+    """Return how far from each corner it may begin to be round: half of the shorter line."""
+    return np.minimum(lengths[:-1], lengths[1:]) / 2
+
+
+def with_round_corners(points: Array, halves: Array) -> Piecewise:
+    """Straight lines between points, round from a way before each corner to as far behind it.
+
+    Three derivatives are continuous.
+    """
+    lengths, directions = _lines_of(points)
     corners = np.cumsum(lengths)[:-1]
     turns = np.diff(directions, axis=0)
-    wanted = tolerance / (_AT_CORNER * np.maximum(np.linalg.norm(turns, axis=1), 1e-12))
-    halves = np.minimum(wanted, np.minimum(lengths[:-1], lengths[1:]) / 2)
     total = lengths.sum()
     knots = np.concatenate([[0.0], np.column_stack([corners - halves, corners + halves]).ravel()])
     knots = np.append(knots, total)
@@ -177,6 +189,72 @@ def rounded_lines(points: Array, tolerance: float) -> Piecewise:
         return line
 
     return Piecewise(knots / total, interpolate(positions, knots / total, _TERMS))
+
+
+def _lines_of(points: Array) -> tuple[Array, Array]:
+    """Lengths and directions of the lines between points."""
+    ways = np.diff(points, axis=0)
+    lengths = np.linalg.norm(ways, axis=1)
+    return lengths, ways / lengths[:, None]
+
+
+def blends_within(
+    points: Array, place: Callable[[Array], Array], radii: Array
+) -> tuple[Array, Array]:
+    """Return where corners begin to be round, such that a place in space is then within a radius.
+
+    Parameters
+    ----------
+    points : ndarray, shape (points, joints)
+        Without neighbours at one place.
+    place : callable
+        Positions of the joints -> the place [m].
+    radii : ndarray
+        Around the place at each point but the first and the last [m].
+
+    Returns
+    -------
+    halves, reached : ndarray
+        The way before and behind each corner, and how far the place is from that at the corner
+        there [m], less than the radius where half of a line is nearer.
+    """
+    lengths, directions = _lines_of(points)
+    room = room_at_corners(lengths)
+    halves = np.empty(len(room))
+    reached = np.empty(len(room))
+    for number, (corner, radius) in enumerate(zip(points[1:-1], radii)):
+        centre = place(corner)
+
+        def away(way: float, direction: Array, corner: Array = corner) -> float:
+            return float(np.linalg.norm(place(corner + way * direction) - centre))  # noqa: B023
+
+        sides = (-directions[number], directions[number + 1])
+        half = min(_first_reach(away, side, radius, room[number]) for side in sides)
+        halves[number] = half
+        reached[number] = max(away(half, side) for side in sides)
+    return halves, reached
+
+
+def _first_reach(
+    away: Callable[[float, Array], float], direction: Array, radius: float, room: float
+) -> float:
+    """Return the way along a direction on which a radius is reached first, or the room there is."""
+    before = 0.0
+    for way in np.linspace(0.0, room, _STEPS_TO_REACH)[1:]:
+        if away(way, direction) > radius:
+            least, most = before, float(way)
+            for _ in range(_HALVINGS):
+                middle = (least + most) / 2
+                least, most = (
+                    (least, middle) if away(middle, direction) > radius else (middle, most)
+                )
+            return least
+        before = float(way)
+    return room
+
+
+_STEPS_TO_REACH = 33
+_HALVINGS = 40
 
 
 def _rise(share: Array) -> Array:

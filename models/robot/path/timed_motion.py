@@ -60,11 +60,13 @@ class TimedMotion:
 
     @classmethod
     def of_table(cls, table: JointTable) -> TimedMotion:
-        """The motion through the points of a table."""
+        """The motion through the points of a table; one that is there twice is one."""
+        shortened = table.without_repeated
+        remarks = list(shortened.remarks[len(table.remarks) :])
+        table = shortened
         times = _checked(table)
-        remarks = [] if table.times is None or table.times[0] == 0 else [
-            f"its first point is at {table.times[0]:.4g} s; the motion begins there"
-        ]  # fmt: skip
+        if table.times is not None and table.times[0] != 0:
+            remarks.append(f"its first point is at {table.times[0]:.4g} s; the motion begins there")
         points = table.positions
         speeds, accelerations = table.velocities, table.accelerations
         if speeds is None:

@@ -229,3 +229,31 @@ def test_a_leader_after_its_follower_in_the_file_leads_as_well():
     assert ELBOW.split(">")[0] in turned
     motion = np.array([[0.4], [1.3], [-2.1]])
     assert _torques(robot_of(turned), motion) == pytest.approx(_torques(robot_of(MIMIC), motion))
+
+
+@pytest.mark.slow
+def test_along_a_path_a_follower_swings_the_tip_as_a_driven_joint_would():
+    """The same motion with the elbow driven: the same residual, and torques by virtual work."""
+    beam = qa.Beam(
+        at="lower", length=0.5, bending_stiffness=30.0, mass_per_length=0.2, tip_mass=0.3, pieces=2
+    )
+    tag = '<mimic joint="shoulder" multiplier="-2" offset="0.3"/>'
+    following = robot_of(MIMIC, beam=beam)
+    driven = robot_of(MIMIC.replace(tag, ""), beam=beam)
+    ends = np.array([0.0, 0.5])
+    paths = (
+        qa.GeometricPath.line(ends[:1], ends[1:]),
+        qa.GeometricPath.line(*np.column_stack([ends, 0.3 - 2 * ends])),
+    )
+    plans = [
+        qa.evaluate_coefficients(robot.along(path).task(1.0, 0.6), [])
+        for robot, path in zip((following, driven), paths)
+    ]
+    assert plans[0].residual > 1e-4
+    assert plans[0].residual == pytest.approx(plans[1].residual, rel=1e-6)
+    in_full = [plan.candidate.in_full.residual for plan in plans]
+    assert in_full[0] == pytest.approx(in_full[1], rel=1e-6)
+    times = np.linspace(0.0, 0.6, 7)
+    torques = [np.array(plan.sampled(times).sample.torques) for plan in plans]
+    felt = torques[1].reshape(2, -1)
+    assert torques[0].ravel() == pytest.approx(felt[0] - 2 * felt[1], rel=1e-6, abs=1e-6)

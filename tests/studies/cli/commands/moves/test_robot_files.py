@@ -70,19 +70,23 @@ def test_the_path_says_how_far_its_spline_swings_out(folder, call):
         assert "path joints that the robot does not drive are left out: grip" in words
 
 
+def test_a_line_whose_orientation_is_free_is_one_for_two_joints(folder, call, refused):
+    write_robot(folder, ARM, ARM_FILE)
+    line = "list robot.yaml --start=0.3,0.9 --line-by=-0.1,0.02,0"
+    message = refused(f"plan {LINE}")
+    assert "within reach, but not with the orientation that a line keeps, for which 2" in message
+    assert "leave it free by --free-orientation (turns=False), or give waypoints" in message
+    code, out, _ = call(f"{line} --free-orientation")
+    assert code == 0
+    assert "driven a, b" in _words(out)
+
+
 def test_a_repeated_waypoint_is_named(folder, call):
     write_robot(folder, ARM, ARM_FILE)
     Path("close.csv").write_text("a,b\n0,0\n0.5,0.3\n0.50001,0.30001\n1.0,0.5\n")
     code, out, _ = call("list robot.yaml --path close.csv")
     assert code == 0
     assert "waypoints 2 and 3 are 1.4e-05 rad (or m) apart and taken as one" in _words(out)
-
-
-def test_a_line_that_turns_a_link_of_two_joints_is_explained(folder, refused):
-    write_robot(folder, ARM, ARM_FILE)
-    message = refused(f"plan {LINE}")
-    assert "the place is within reach, but a line keeps the link's orientation as well" in message
-    assert "which 2 joints cannot do there; give waypoints, by --path" in message
 
 
 def test_limits_of_joints_that_turn_and_slide_are_typed_by_name(folder, call, refused):

@@ -1,0 +1,1 @@
+"""Trajectories of MoveIt planned anew by quietarm, so that what the arm carries arrives still."""
