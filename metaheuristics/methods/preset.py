@@ -195,17 +195,27 @@ class Preset:
         """
         return (objectives if self.by_swarms else 1) * population * generations
 
-    def unfit_for(self, objectives: int, noise: float = 0.0) -> str:
-        """Say why the method does not fit so many objectives, or noise; empty if it fits."""
+    def population_for(self, evaluations: int | None) -> int:
+        """Return the population by default for so many candidates in all; its own without them."""
+        del evaluations
+        return self.population
+
+    def unfit_for(self, objectives: int, noise: float = 0.0, of_model: bool = True) -> str:
+        """Say why the method does not fit so many objectives, noise, or a user's own function.
+
+        Empty if it fits.
+        """
         if self.residual_and_energy and objectives > 2:
             return f"{self.name} is for residual and energy alone, not for {objectives} objectives"
+        if self.takes_gradients and not of_model:
+            return f"{self.name} takes steps of a model's gradient, and a function has none"
         if self.takes_gradients and noise > 0:
             return f"{self.name} takes steps of the model's gradient, which has no noise"
         return ""
 
-    def refuse_unfit(self, objectives: int, noise: float = 0.0) -> None:
+    def refuse_unfit(self, objectives: int, noise: float = 0.0, of_model: bool = True) -> None:
         """Refuse a problem that it is not for; ValueError says what to give."""
-        if reason := self.unfit_for(objectives, noise):
+        if reason := self.unfit_for(objectives, noise, of_model):
             raise ValueError(f"{reason}; give another method, as moead-de")
 
     def refuse_less_than_one(self, evaluations: int, population: int, objectives: int = 2) -> None:
