@@ -78,7 +78,9 @@ class Archive:
         self._entered_rows = 0
         self._waiting = list[tuple[Places, Array, Array, Array]]()
         self._waiting_rows = 0
-        self._began = time.thread_time()
+        # what a simulator or a machine takes is no time of this thread
+        self._clock = time.thread_time if isinstance(task, PointToPoint) else time.monotonic
+        self._began = self._clock()
         self._seconds_here = 0.0
         self._cost = COST.copy()
 
@@ -95,9 +97,12 @@ class Archive:
 
     @property
     def seconds(self) -> float:
-        """Processor time since the beginning, without the archive's and compilation's [s]."""
+        """Processor time since the beginning, without the archive's and compilation's [s].
+
+        Of a user's own function all the time that has passed.
+        """
         apart = self._seconds_here + COST.since(self._cost).builds
-        return time.thread_time() - self._began - apart
+        return self._clock() - self._began - apart
 
     def add(
         self,
@@ -115,7 +120,7 @@ class Archive:
         # evaluations between neighbouring marks: 24 in a decade, at the ends of generations
         step = 10 ** (1 / 24)
         seconds = self.seconds
-        began = time.thread_time()
+        began = self._clock()
         numbers = self.evaluations + 1 + np.flatnonzero(usable)
         self.evaluations += len(X) + repeated
         if len(numbers):
@@ -128,7 +133,7 @@ class Archive:
         if self.evaluations >= self._next_mark:
             self.mark(seconds)
             self._next_mark = max(self.evaluations, 1) * step
-        self._seconds_here += time.thread_time() - began
+        self._seconds_here += self._clock() - began
 
     def entering(self, F: Array, usable: NDArray[np.bool_]) -> Places:
         """Rows of objectives that would enter, of those that are usable."""
@@ -226,7 +231,7 @@ class Archive:
         if not self.marks or self.marks[-1].evaluations < self.evaluations:
             self.mark(searched)
         coefficients, objectives = self.non_dominated()
-        began = time.thread_time()
+        began = self._clock()
         chosen = thinned(objectives)
         true = self._of_front(3, len(self.names))
         points = problem.points_of(coefficients[chosen], true[chosen], record.bound)
@@ -234,7 +239,7 @@ class Archive:
             record,
             evaluations=self.evaluations,
             versions=search_versions(),
-            seconds=max(0.0, searched + time.thread_time() - began),
+            seconds=searched + self._clock() - began,
         )
         return problem.front_with(
             points,

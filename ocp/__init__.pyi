@@ -25,6 +25,8 @@ from .front.cross_check import CrossCheck as CrossCheck
 from .front.cross_check import cross_check as cross_check
 from .front.epsilon import epsilon_front as epsilon_front
 from .front.front import Front as Front
+from .front.function_front import FunctionFront as FunctionFront
+from .front.searched_function import NoTaskError as NoTaskError
 from .front.front import reference_corner as reference_corner
 from .front.points import FailedPoint as FailedPoint
 from .front.points import FrontPoint as FrontPoint

@@ -8,6 +8,7 @@ from .machine import Recording as Recording
 from .machine.identify import identify as identify
 from .machine.learn import learn as learn
 from .metaheuristics import Indicator as Indicator
+from .metaheuristics import Search as Search
 from .metaheuristics import SearchMethod as SearchMethod
 from .metaheuristics import search as search
 from .models import ArmOnFlexibleLink as ArmOnFlexibleLink

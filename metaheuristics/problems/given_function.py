@@ -60,6 +60,8 @@ class GivenFunction(ProblemFunction):
         with an array of one row first, and with the row alone where that does not fit.
     threads : int
         Calls at the same time: of blocks of candidates, or of candidates.
+    name : str, optional
+        What a front calls it; the function's own name by default.
 
     Raises
     ------
@@ -84,6 +86,7 @@ class GivenFunction(ProblemFunction):
         reference: Sequence[float] | None = None,
         vectorized: bool | None = None,
         threads: int = 1,
+        name: str = "",
     ) -> None:
         def stated(name: str, given: Any, otherwise: Any = None) -> Any:
             own = getattr(function, name, None) if given is None else given
@@ -93,7 +96,7 @@ class GivenFunction(ProblemFunction):
             raise TypeError(f"function is {function!r}; give a function of candidates")
         names = None if objectives is RESIDUAL_AND_ENERGY else objectives
         self.task = self.profile = self.searched = SearchedFunction(
-            name_of(function),
+            name or name_of(function),
             stated("lower", lower),
             stated("upper", upper),
             stated("objectives", names, RESIDUAL_AND_ENERGY),

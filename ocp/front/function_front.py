@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import IF_STATED, CountFromOne, finite
-from quietarm.ocp.figures import Figure
 from quietarm.ocp.front.front import Front
 from quietarm.ocp.front.points import Entries, FrontPoint, non_dominated_rows
 from quietarm.ocp.front.searched_function import SearchedFunction
@@ -127,17 +126,11 @@ class FunctionFront(Front):
 
     def judged(self, point: FrontPoint) -> NoReturn:
         """Raise NoTaskError: a function has no motion that CVODES could judge."""
-        self.task.plant
-        raise AssertionError(point)
+        raise self.function.no_task()
 
     def figures_within(self, residual: float, place: str) -> dict[str, float]:
         """Return nothing: figures are of motions."""
         return {}
-
-    def figure_values(self, figure: Figure) -> NDArray[np.float64]:
-        """Raise NoTaskError: figures are of motions."""
-        self.task.plant
-        raise AssertionError(figure)
 
     @property
     def _peaks(self) -> list[Objective]:

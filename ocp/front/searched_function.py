@@ -86,7 +86,11 @@ class SearchedFunction:
     def __getattr__(self, name: str) -> NoReturn:
         if name.startswith("_") or not (hasattr(PointToPoint, name) or name in _OF_TASKS):
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        raise NoTaskError(
+        raise self.no_task()
+
+    def no_task(self) -> NoTaskError:
+        """What to raise where a plant or a move is needed."""
+        return NoTaskError(
             f"this front is of the function {clipped(self.name)}, which has no plant and no task; "
             "give a front of a move for this"
         )
