@@ -54,6 +54,10 @@ class SearchProgress:
         Candidates evaluated, and those among them that were not finite, and that violated a limit.
     seconds : float
         Processor time of the search.
+    tip_unit, energy_unit : str
+        Units of the first two objectives.
+    names : (str, str)
+        Their names; a user's own function has others than residual and energy.
     """
 
     generation: int
@@ -66,6 +70,8 @@ class SearchProgress:
     failed: int = 0
     infeasible: int = 0
     tip_unit: str = "m"
+    energy_unit: str = "J"
+    names: tuple[str, str] = ("residual", "energy")
 
 
 @takes(start=Front)
@@ -423,7 +429,8 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
         archive.seconds,
         function.failed,
         function.infeasible,
-        function.units[0],
+        *function.units[:2],
+        names=function.objectives[:2],
     )
 
 
