@@ -158,12 +158,17 @@ def search(
         "lower": lower, "upper": upper, "units": units, "constraints": constraints,
         "reference": reference, "vectorized": vectorized,
     }  # fmt: skip
-    if isinstance(task, PointToPoint) or not callable(task):
+    # not at the top: it takes pymoo's problems and the archive with it, for a search alone
+    from quietarm.metaheuristics.problems.problem_function import ProblemFunction
+
+    if isinstance(task, ProblemFunction):
+        problem: ProblemFunction | _Move = task
+    elif isinstance(task, PointToPoint) or not callable(task):
         move = instance("task", task, PointToPoint)
         for name, value in names_of_function.items():
             if value is not None:
                 raise ValueError(f"{name} is for a function, and this is a task; leave it out")
-        problem: ProblemFunction | _Move = _Move(move, profile, bound, objectives, threads)
+        problem = _Move(move, profile, bound, objectives, threads)
     else:
         for name, value in {"profile": profile, "bound": bound}.items():
             if value is not None:

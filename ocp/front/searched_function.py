@@ -22,7 +22,7 @@ _LONGEST = 60
 """Letters of a name: it heads a column."""
 
 
-class NoTaskError(QuietarmError, AttributeError):
+class NoTaskError(QuietarmError, ValueError, AttributeError):
     """A front is of a function, and what was asked for needs a plant and a move."""
 
 
