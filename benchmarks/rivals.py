@@ -1,4 +1,4 @@
-"""Are the methods of the list beaten by programs of twenty lines? At 200, 1,000 and 10,000 candidates.
+"""Methods of the list against programs of twenty lines, at 200, 1,000 and 10,000 candidates.
 
     python benchmarks/rivals.py [--seeds 3] [--budgets 200,1000,10000]
 

@@ -17,6 +17,7 @@ from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
 from .problems.given_function import GivenFunction as GivenFunction
+from .problems.own_energy import MoveSamples as MoveSamples
 from .problems.problem_function import ProblemFunction as ProblemFunction
 from .problems.pymoo_problem import PymooProblem as PymooProblem
 from .problems.recorded import RecordedFunction as RecordedFunction

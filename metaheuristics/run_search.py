@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from pymoo.core.algorithm import Algorithm
 
+    from quietarm.metaheuristics.problems.own_energy import MoveSamples
     from quietarm.metaheuristics.problems.problem_function import ProblemFunction
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
@@ -96,6 +97,7 @@ def search(
     constraints: Sequence[str] | None = None,
     reference: Sequence[float] | None = None,
     vectorized: bool | None = None,
+    energy: Callable[[MoveSamples], ArrayLike] | None = None,
     noise: float = 0.0,
     reevaluate: int = 1,
 ) -> Front:
@@ -138,6 +140,10 @@ def search(
         Called with a `SearchProgress` after every generation.
     objectives : sequence of str
         Residual and energy, and peaks beside them, as ``"peak_torque"``; of a function any names.
+    energy : callable, optional
+        Of a task, an energy of one's own in the place of the task's: a function of `MoveSamples`,
+        which has torque, speed, tips and modes of many candidates at once as NumPy arrays, to an
+        energy for each. The front is then a `FunctionFront`.
     noise, reevaluate
         As of a `RecordedFunction`: noise of residual and energy, as a share, and how often a
         candidate that is kept is evaluated.
@@ -169,11 +175,23 @@ def search(
             if value is not None:
                 raise ValueError(f"{name} is for a function, and this is a task; leave it out")
         problem = _Move(move, profile, bound, objectives, threads)
+        if energy is not None:
+            from quietarm.metaheuristics.problems.own_energy import OwnEnergyFunction
+
+            problem = OwnEnergyFunction(
+                move,
+                None if profile is None else _profile_of(profile),
+                energy=energy,
+                bound=bound,
+                objectives=objectives,
+                threads=threads,
+            )
     else:
-        for name, value in {"profile": profile, "bound": bound}.items():
+        for name, value in {"profile": profile, "bound": bound, "energy": energy}.items():
             if value is not None:
                 raise ValueError(
-                    f"{name} is for a task, and this is a function; give lower and upper"
+                    f"{name} is for a task, and this is a function, which has lower and upper; "
+                    "leave it out"
                 )
         from quietarm.metaheuristics.problems.given_function import GivenFunction
 

@@ -45,6 +45,7 @@ from .ocp import epsilon_front as epsilon_front
 from .ocp import evaluate_coefficients as evaluate_coefficients
 from .ocp import evaluate_robustness as evaluate_robustness
 from .ocp import fastest_move as fastest_move
+from .ocp import motion_of as motion_of
 from .ocp import plan_move as plan_move
 from .ocp import plan_moves as plan_moves
 from .ocp import polish_front as polish_front

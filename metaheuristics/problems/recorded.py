@@ -1,4 +1,4 @@
-"""A problem's function that keeps what it is asked, by a search of quietarm or of another library."""
+"""A problem's function that keeps what it is asked, by a search of quietarm or another library."""
 
 from __future__ import annotations
 

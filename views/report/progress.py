@@ -186,7 +186,8 @@ def _brief(progress: SearchProgress) -> str:
     shown, scale = tip_scale(progress.tip_unit)
     return (
         f"{progress.generation}/{progress.generations} {scale * progress.residual:.2g} {shown} "
-        f"{progress.energy:.3g} {progress.energy_unit} hv {progress.hypervolume:.3f} {_speed(progress):.0f}/s"
+        f"{progress.energy:.3g} {progress.energy_unit} hv {progress.hypervolume:.3f} "
+        f"{_speed(progress):.0f}/s"
     )
 
 
