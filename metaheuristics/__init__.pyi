@@ -18,6 +18,7 @@ from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
 from .problems.given_function import GivenFunction as GivenFunction
 from .problems.own_energy import MoveSamples as MoveSamples
+from .problems.own_energy import OwnEnergyFunction as OwnEnergyFunction
 from .problems.problem_function import ProblemFunction as ProblemFunction
 from .problems.pymoo_problem import PymooProblem as PymooProblem
 from .problems.recorded import RecordedFunction as RecordedFunction

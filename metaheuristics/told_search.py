@@ -53,7 +53,7 @@ class Told:
 
 @dataclass(frozen=True)
 class SearchState(Answer):
-    """All that a `Search` needs to go on: what was asked for, and what was told until now.
+    """The state of a `Search`: what was asked for, and what was told until now.
 
     Attributes
     ----------
@@ -203,7 +203,7 @@ class Search:
 
     @property
     def done(self) -> bool:
-        """Whether every candidate was told: there is nothing more to ask."""
+        """Return whether every candidate was told: there is nothing more to ask."""
         return self._over
 
     @property
@@ -286,7 +286,7 @@ class Search:
             exchange.close()
 
     def _resumed(self) -> tuple[Told, ...]:
-        """What the file has, where there is one; ValueError where it is of another search."""
+        """Return what the file has, if there is one; ValueError if it is of another search."""
         if self._path is None or not self._path.exists():
             return ()
         before = SearchState.load(self._path)

@@ -191,7 +191,7 @@ def _corner(F: Array, front: Array) -> Array:
 
 
 def _gain(front: Array, corner: Array, rows: Array, random: np.random.Generator) -> Array:
-    """How much rows of objectives add to a front."""
+    """Return the gain that each row of objectives is to a front."""
     if rows.shape[1] == 2:
         return hypervolume_gain(front, corner, rows)
     ideal = front.min(axis=0)

@@ -30,7 +30,7 @@ from quietarm.ocp import (
     epsilon_front,
     non_dominated,
 )
-from quietarm.ocp.checks import takes, unknown
+from quietarm.ocp.checks import instance, takes, unknown
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives, peak_quantities
@@ -94,6 +94,7 @@ class NamedProblem:
             object.__setattr__(self, "objectives", checked_objectives(self.objectives))
 
     @classmethod
+    @takes(reference_front=Front)
     def of_function(
         cls, name: str, function: ProblemFunction | Any, *, reference_front: Front, **settings: Any
     ) -> NamedProblem:
@@ -135,6 +136,7 @@ class NamedProblem:
 
         ValueError when the front states no bound, or has fewer than two points.
         """
+        instance("task", front.task, PointToPoint)  # a front of a function has none
         bound = front.record.bound or front.profile.default_bound
         if bound is None:
             raise ValueError(f"{name} states no bound; give a front that was found within one")

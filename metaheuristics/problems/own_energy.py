@@ -179,7 +179,7 @@ class OwnEnergyFunction(MoveFunction):
 
 
 def samples_of(evaluation: Evaluation, duration: float) -> MoveSamples:
-    """What an energy sees of evaluated candidates, of the nominal plant, in the order of time."""
+    """Return what an energy sees of evaluated candidates: the nominal plant, in order of time."""
     simulation = evaluation.evaluator.simulation
     mesh = simulation.mesh
     weights = np.outer(GAUSS_WEIGHTS, mesh.lengths)

@@ -69,12 +69,13 @@ class FunctionOfFile:
         if spec is None or spec.loader is None:
             raise ValueError(f"{self.path} is no Python file; give one")
         module = importlib.util.module_from_spec(spec)
+        here = Path(self.path).resolve()
         with _importing_beside(Path(self.path)):
             try:
                 spec.loader.exec_module(module)
             except (Exception, SystemExit) as error:
                 frames = traceback.extract_tb(error.__traceback__)
-                lines = [frame.lineno for frame in frames if frame.filename == self.path]
+                lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == here]
                 line = getattr(error, "lineno", None) or (lines[-1] if lines else None)
                 place = f", line {line}" if line else ""
                 raise ValueError(
