@@ -16,6 +16,10 @@ from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
 from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
+from .problems.given_function import GivenFunction as GivenFunction
+from .problems.own_energy import MoveSamples as MoveSamples
+from .problems.own_energy import OwnEnergyFunction as OwnEnergyFunction
+from .problems.problem_function import ProblemFunction as ProblemFunction
 from .problems.pymoo_problem import PymooProblem as PymooProblem
 from .problems.recorded import RecordedFunction as RecordedFunction
 from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
@@ -24,3 +28,5 @@ from .run_search import search as search
 from .score import Indicator as Indicator
 from .score import Reference as Reference
 from .spread import Spread as Spread
+from .told_search import Search as Search
+from .told_search import SearchState as SearchState

@@ -6,16 +6,20 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib import metadata
+from typing import Any
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 from quietarm.metaheuristics.score import share_of_box
 from quietarm.metaheuristics.thinning import thinned
-from quietarm.ocp import Front, JointProfile, Mark, PointToPoint, reference_corner
+from quietarm.ocp import Front, Mark, PointToPoint, reference_corner
 from quietarm.ocp.cost import COST
-from quietarm.ocp.front.points import Entries, evaluated
+from quietarm.ocp.front.function_front import FunctionEntries
+from quietarm.ocp.front.points import Entries
+from quietarm.ocp.front.searched_function import SearchedFunction
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities
 from quietarm.ocp.record import Record, versions
 
@@ -33,29 +37,39 @@ class Archive:
 
     Parameters
     ----------
-    task : PointToPoint
-        The move.
+    task : PointToPoint or SearchedFunction
+        The move, or what stands in its place.
     variables : int
         Coefficients of a candidate.
     objectives : sequence of str
         Names of the objectives.
     noisy : bool
         Whether the values that it takes have noise.
+    corner : tuple of float, optional
+        What hypervolumes are measured from; by default that of the task, or else the largest values
+        of the candidates that entered.
     """
 
     def __init__(
         self,
-        task: PointToPoint,
+        task: PointToPoint | SearchedFunction,
         variables: int,
         objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
         noisy: bool = False,
+        corner: tuple[float, ...] | None = None,
     ) -> None:
-        self.task = task
         self.names = tuple(objectives)
         self.noisy = noisy
         self.evaluations = 0
         self.marks = list[Mark]()
-        self.corner = reference_corner(task, objectives)
+        self._corner = corner
+        self._kind_of_entries = Entries
+        if isinstance(task, PointToPoint):
+            self._others = peak_quantities(self.names)
+            self._corner = reference_corner(task, objectives) if corner is None else corner
+        else:
+            self._others = self.names[len(RESIDUAL_AND_ENERGY) :]
+            self._kind_of_entries = FunctionEntries
         self._next_mark = 1.0
         self._variables = variables
         self._front: Places = np.empty(0, dtype=np.int64)  # which of those that entered
@@ -64,15 +78,31 @@ class Archive:
         self._entered_rows = 0
         self._waiting = list[tuple[Places, Array, Array, Array]]()
         self._waiting_rows = 0
-        self._began = time.thread_time()
+        # what a simulator or a machine takes is no time of this thread
+        self._clock = time.thread_time if isinstance(task, PointToPoint) else time.monotonic
+        self._began = self._clock()
         self._seconds_here = 0.0
         self._cost = COST.copy()
 
     @property
+    def corner(self) -> tuple[float, ...]:
+        """The corner that hypervolumes are measured from."""
+        if self._corner is not None:
+            return self._corner
+        self._let_enter()
+        blocks = [block[3] for block in self._entered]
+        if not blocks:
+            return (1.0,) * len(self.names)
+        return tuple(np.concatenate(blocks).max(axis=0).tolist())
+
+    @property
     def seconds(self) -> float:
-        """Processor time since the beginning, without the archive's and compilation's [s]."""
+        """Processor time since the beginning, without the archive's and compilation's [s].
+
+        Of a user's own function all the time that has passed.
+        """
         apart = self._seconds_here + COST.since(self._cost).builds
-        return time.thread_time() - self._began - apart
+        return self._clock() - self._began - apart
 
     def add(
         self,
@@ -90,7 +120,7 @@ class Archive:
         # evaluations between neighbouring marks: 24 in a decade, at the ends of generations
         step = 10 ** (1 / 24)
         seconds = self.seconds
-        began = time.thread_time()
+        began = self._clock()
         numbers = self.evaluations + 1 + np.flatnonzero(usable)
         self.evaluations += len(X) + repeated
         if len(numbers):
@@ -103,7 +133,7 @@ class Archive:
         if self.evaluations >= self._next_mark:
             self.mark(seconds)
             self._next_mark = max(self.evaluations, 1) * step
-        self._seconds_here += time.thread_time() - began
+        self._seconds_here += self._clock() - began
 
     def entering(self, F: Array, usable: NDArray[np.bool_]) -> Places:
         """Rows of objectives that would enter, of those that are usable."""
@@ -129,10 +159,13 @@ class Archive:
     def non_dominated(self) -> tuple[Array, Array]:
         """Coefficients and objectives of what was found, by increasing residual."""
         self._let_enter()
+        return self._of_front(1, self._variables), self._objectives
+
+    def _of_front(self, column: int, width: int) -> Array:
+        """A column of the entries, of those alone that none dominates now."""
         if not self._entered:
-            return np.empty((0, self._variables)), self._objectives
-        coefficients = np.concatenate([block[1] for block in self._entered])
-        return coefficients[self._front], self._objectives
+            return np.empty((0, width))
+        return np.concatenate([block[column] for block in self._entered])[self._front]
 
     def share_of_box(self) -> float:
         """Share of the reference box that is dominated."""
@@ -147,16 +180,16 @@ class Archive:
         """Every candidate that entered."""
         self._let_enter()
         if not self._entered:
-            return Entries()
-        columns = [np.concatenate(column) for column in zip(*self._entered)]
+            return self._kind_of_entries()
+        columns: list[Any] = [np.concatenate(column) for column in zip(*self._entered)]
         numbers, coefficients, believed, true = columns
         residuals, energies, *peaks = (tuple(column.tolist()) for column in true.T)
-        return Entries(
+        return self._kind_of_entries(
             tuple(numbers.tolist()),
             _rows(coefficients),
             residuals,
             energies,
-            dict(zip(peak_quantities(self.names), peaks)),
+            dict(zip(self._others, peaks)),
             _rows(believed) if self.noisy else (),
         )
 
@@ -183,40 +216,39 @@ class Archive:
 
     def front(
         self,
-        profile: JointProfile,
+        problem: ProblemFunction,
         record: Record,
         *,
         failed: int = 0,
         infeasible: int = 0,
     ) -> Front:
-        """Make a front of at most 100 points by CVODES, with every candidate that entered.
+        """Make a front of at most 100 points, with every candidate that entered.
 
-        The record states the method and its settings; here it gets the effort and the versions.
+        Of a move the points are by CVODES. The record states the method and its settings; here it
+        gets the effort and the versions.
         """
         searched = self.seconds
         if not self.marks or self.marks[-1].evaluations < self.evaluations:
             self.mark(searched)
         coefficients, objectives = self.non_dominated()
-        began = time.thread_time()
-        shown = coefficients[thinned(objectives)]
-        points = evaluated(self.task, profile, shown, record.bound, objectives=self.names).points
+        began = self._clock()
+        chosen = thinned(objectives)
+        true = self._of_front(3, len(self.names))
+        points = problem.points_of(coefficients[chosen], true[chosen], record.bound)
         record = replace(
             record,
             evaluations=self.evaluations,
             versions=search_versions(),
-            seconds=searched + time.thread_time() - began,
+            seconds=searched + self._clock() - began,
         )
-        return Front(
-            self.task,
-            profile,
+        return problem.front_with(
             points,
             record,
-            self.corner,
+            reference=self.corner,
             failed=failed,
             infeasible=infeasible,
             history=tuple(self.marks),
             entries=self.entries,
-            objectives=self.names,
         )
 
 

@@ -107,6 +107,11 @@ class Job:
             "noise": share,
             "reevaluate": times_evaluated(reevaluate, share),
         }
+        if named and problem.given is not None and (named.by_gradient or named.polish):
+            raise ValueError(
+                f"{method} takes the gradient of a model, and {problem.name} is a function, which "
+                "has none; give a search"
+            )
         if named and named.by_gradient:
             refuse_more_objectives(named.method, problem.objectives)
             if share:
@@ -115,7 +120,8 @@ class Job:
                     "noise out"
                 )
         elif named:
-            preset_of(named.method).refuse_unfit(len(problem.objectives), share)
+            preset = preset_of(named.method)
+            preset.refuse_unfit(len(problem.objectives), share, of_model=problem.given is None)
         for name, value in fields.items():
             object.__setattr__(self, name, value)
 
@@ -163,11 +169,15 @@ class Job:
         settings = dict(self.settings)
         method: Any = self.method
         named = NamedMethod.read(method) if isinstance(method, str) else None
-        common: Any = {
-            "profile": problem.profile,
-            "bound": problem.bound,
-            "seed": self.seed,
-        }
+        common: Any = {"seed": self.seed}
+        searched: Any = problem.given
+        if problem.given is None:
+            searched = problem.task
+            common |= {
+                "profile": problem.profile,
+                "bound": problem.bound,
+                "objectives": problem.objectives,
+            }
         if named and named.by_gradient:
             if rehearse:
                 settings["starts" if named.method == "multistart" else "points"] = rehearsal
@@ -175,7 +185,6 @@ class Job:
                 problem.task,
                 method=named,
                 settings=settings,
-                objectives=problem.objectives,
                 **common,
             )
         population: Any = settings.pop("population", None)
@@ -186,7 +195,7 @@ class Job:
             preset = PRESETS[method]
             if named.polish:
                 options, settings = split_for_polish(settings, preset.setting_names)
-            of_population = population or preset.population
+            of_population = population or preset.population_for(budget)
             size = preset.evaluations(of_population, 1, len(problem.objectives))
         assert budget is not None  # only the gradient ends by itself
         budget = min(budget, rehearsal * size) if rehearse else budget
@@ -197,12 +206,11 @@ class Job:
             run_method(method, function, self.seed, budget)
             return function.front(self.label, self.seed)
         front = search(
-            problem.task,
+            searched,
             algorithm=method,
             population=population,
             settings=settings,
             evaluations=budget,
-            objectives=problem.objectives,
             noise=self.noise,
             reevaluate=self.reevaluate,
             **common,
@@ -231,7 +239,7 @@ def _budget(
         if method.polish:
             options, search_settings = split_for_polish(settings, preset.setting_names)
             solver_with(options)  # refuses what is out of range
-        population: Any = search_settings.pop("population", preset.population)
+        population: Any = search_settings.pop("population", preset.population_for(budget))
         preset.checked(population, search_settings)
         if budget is None:
             return preset.evaluations(population, preset.generations, objectives)

@@ -6,7 +6,7 @@ import inspect
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
@@ -21,14 +21,20 @@ from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives
 from quietarm.ocp.planning.choose_profile import choose_profile
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
     from pymoo.core.algorithm import Algorithm
 
+    from quietarm.metaheuristics.problems.own_energy import MoveSamples
+    from quietarm.metaheuristics.problems.problem_function import ProblemFunction
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
 MOST_EVALUATIONS = 1_000_000_000
 SECONDS_OF_CANDIDATE = 5e-5
 """Of a core: 40,000 of the paper's first move take two seconds."""
+DEFAULT = "nsga2"
+"""The method of a search of a move where none is named."""
+DEFAULT_OF_FUNCTIONS = "nsga2"
+"""That of a search of a function, which affords fewer candidates."""
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of searches are compared."""
 
@@ -49,6 +55,10 @@ class SearchProgress:
         Candidates evaluated, and those among them that were not finite, and that violated a limit.
     seconds : float
         Processor time of the search.
+    tip_unit, energy_unit : str
+        Units of the first two objectives.
+    names : (str, str)
+        Their names; a user's own function has others than residual and energy.
     """
 
     generation: int
@@ -61,15 +71,19 @@ class SearchProgress:
     failed: int = 0
     infeasible: int = 0
     tip_unit: str = "m"
+    energy_unit: str = "J"
+    names: tuple[str, str] = ("residual", "energy")
 
 
-@takes(task=PointToPoint, start=Front)
+@takes(start=Front)
 def search(
-    task: PointToPoint,
+    task: PointToPoint | Callable[..., Any],
     profile: JointProfile | None = None,
     *,
-    algorithm: str | SearchMethod | Algorithm = "nsga2",
+    algorithm: str | SearchMethod | Algorithm | None = None,
     bound: float | None = None,
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
     population: int | None = None,
     generations: int | None = None,
     evaluations: int | None = None,
@@ -79,42 +93,57 @@ def search(
     start: Front | None = None,
     report: Callable[[SearchProgress], None] | None = None,
     objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
+    units: Sequence[str] | None = None,
+    constraints: Sequence[str] | None = None,
+    reference: Sequence[float] | None = None,
+    vectorized: bool | None = None,
+    energy: Callable[[MoveSamples], ArrayLike] | None = None,
     noise: float = 0.0,
     reevaluate: int = 1,
 ) -> Front:
-    """Search the trade-off between residual, energy and peaks without derivatives.
+    """Search the trade-off between residual, energy and peaks, or of any function, by values alone.
 
     Parameters
     ----------
-    task : PointToPoint
-        The move; its limits become constraints.
+    task : PointToPoint or callable
+        The move; its limits become constraints. Or a function of candidates to objectives, any
+        simulator: see `GivenFunction`. It runs in this process, as its author wrote it.
     profile : JointProfile, optional
         How the joint moves; by default the polynomial that `plan_move` takes for the task: of six
         terms without limits, of 18 or 24 within.
-    algorithm : str, SearchMethod or pymoo Algorithm
+    algorithm : str, SearchMethod or pymoo Algorithm, optional
         A name of `PRESETS`: ``"nsga2-paper"`` and ``"vepso"`` have the paper's settings, the others
         pymoo's. Or an object of one's own `SearchMethod`. Or any multi-objective algorithm of pymoo
-        that was not run yet; it is copied, so the one given stays as it is.
+        that was not run yet; it is copied, so the one given stays as it is. By default
+        ``"nsga2"``; of a function `DEFAULT_OF_FUNCTIONS`.
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
+    lower, upper, units, constraints, reference, vectorized
+        Of a function, as of a `GivenFunction`, or its attributes.
     population, generations : int, optional
-        Individuals (particles in a swarm) and generations; those of the preset by default. With
+        Individuals (particles in a swarm) and generations; by default those of the preset, or a
+        population that fits the `evaluations` where these are few (`Preset.population_for`). With
         an algorithm of your own its population counts.
     evaluations : int, optional
         Candidates in all, in place of generations: the search ends after exactly so many, in the
-        middle of a generation if need be.
+        middle of a generation if need be. Required of a function, unless generations are given.
     settings : mapping, optional
         Other settings of a method known by name, as ``{"crossover": 0.7}``; see `Preset.settings`.
     seed : int
         Seed of the random numbers.
     threads : int
-        Blocks of the population that are evaluated at the same time.
+        Blocks of the population that are evaluated at the same time; of a function of one
+        candidate, so many candidates.
     start : Front, optional
         Its points are in the first population, as many as that holds.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
     objectives : sequence of str
-        Residual and energy, and peaks beside them, as ``"peak_torque"``.
+        Residual and energy, and peaks beside them, as ``"peak_torque"``; of a function any names.
+    energy : callable, optional
+        Of a task, an energy of one's own in the place of the task's: a function of `MoveSamples`,
+        which has torque, speed, tips and modes of many candidates at once as NumPy arrays, to an
+        energy for each. The front is then a `FunctionFront`.
     noise, reevaluate
         As of a `RecordedFunction`: noise of residual and energy, as a share, and how often a
         candidate that is kept is evaluated.
@@ -122,80 +151,230 @@ def search(
     Returns
     -------
     Front
-        At most 100 of the non-dominated points found, with values by CVODES, without any noise.
+        At most 100 of the non-dominated points found: of a move with values by CVODES, without any
+        noise; of a function a `FunctionFront` with the values that it gave.
 
     Raises
     ------
     ValueError
-        When an argument is out of range or missing, or the front to start from is of another
-        profile or beyond the bound.
+        When an argument is out of range or missing, the front to start from is of another
+        profile or beyond the bound, or the function fails.
     """
-    most_generations = 1_000_000
-    # Not at the top: pymoo takes longer to load than all of quietarm, and only a search needs it.
-    from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
+    names_of_function = {
+        "lower": lower, "upper": upper, "units": units, "constraints": constraints,
+        "reference": reference, "vectorized": vectorized,
+    }  # fmt: skip
+    # not at the top: it takes pymoo's problems and the archive with it, for a search alone
+    from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 
-    profile = choose_profile(task) if profile is None else _profile_of(profile)
-    names = checked_objectives(objectives)
-    if generations is not None and evaluations is not None:
-        raise ValueError("evaluations stand in place of generations; leave one of them out")
-    if isinstance(algorithm, SearchMethod):
-        settings = {name: getattr(algorithm, name) for name in algorithm.defaults()}
-        algorithm = algorithm.name
-    if isinstance(algorithm, str):
-        method = algorithm
-        preset = preset_of(algorithm)
-        preset.refuse_unfit(len(names), noise)
-        chosen, stated = _of_preset(preset, task, population, evaluations, settings, len(names))
-        size = preset.evaluations(stated["population"], 1, len(names))
-        usual = preset.generations
-        if preset.is_function and start is not None:
-            raise ValueError(
-                f"{method} begins where its seed says; leave the front to start from out"
+    if isinstance(task, ProblemFunction):
+        problem: ProblemFunction | _Move = task
+    elif isinstance(task, PointToPoint) or not callable(task):
+        move = instance("task", task, PointToPoint)
+        for name, value in names_of_function.items():
+            if value is not None:
+                raise ValueError(f"{name} is for a function, and this is a task; leave it out")
+        problem = _Move(move, profile, bound, objectives, threads)
+        if energy is not None:
+            from quietarm.metaheuristics.problems.own_energy import OwnEnergyFunction
+
+            problem = OwnEnergyFunction(
+                move,
+                None if profile is None else _profile_of(profile),
+                energy=energy,
+                bound=bound,
+                objectives=objectives,
+                threads=threads,
             )
-        if preset.is_function and evaluations is None:  # it knows no generations
-            evaluations = preset.generations if generations is None else generations
-            generations = None
     else:
-        chosen, stated = _of_user(algorithm, population, settings)
-        method = type(chosen).__name__
-        size = 1
-        usual = None
-    generations = usual if generations is None else generations
-    if evaluations is None and generations is None:
-        raise ValueError(f"give the number of generations or of evaluations for {method}")
-    if evaluations is None:
-        generations = whole("generations", generations, 1, most_generations)
-        limits: dict[str, Any] = {"generations": generations}
-    else:
-        evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
-        generations = -(-evaluations // size)
-        limits = {"evaluations": evaluations}
-    bound = profile.default_bound if bound is None else bound
-    if bound is None:
-        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
-        raise ValueError(
-            f"{method} searches a box: give a bound on the coefficients (the paper used {papers})"
-        )
-    seed = whole("seed", seed, 0)
-    function = RecordedFunction(
-        task,
-        profile,
-        bound=bound,
-        objectives=names,
-        threads=threads,
-        budget=evaluations or inf,
+        for name, value in {"profile": profile, "bound": bound, "energy": energy}.items():
+            if value is not None:
+                raise ValueError(
+                    f"{name} is for a task, and this is a function, which has lower and upper; "
+                    "leave it out"
+                )
+        from quietarm.metaheuristics.problems.given_function import GivenFunction
+
+        problem = GivenFunction(task, objectives=objectives, threads=threads, **names_of_function)
+    run = SearchRun.begin(
+        problem,
+        algorithm,
+        population=population,
+        generations=generations,
+        evaluations=evaluations,
+        settings=settings,
+        seed=seed,
+        start=start,
         noise=noise,
         reevaluate=reevaluate,
-        seed=seed,
     )
-    first = _starts(start, function) if start is not None else np.empty((0, profile.size))
-    # a division by a distance of zero is of no concern to a user; and pymoo's NSGA-III leaves all
-    # warnings of the process switched off
-    with warnings.catch_warnings(), np.errstate(all="ignore"), suppress(BudgetSpentError):
-        for done in _run(chosen, function, seed, first, limits):
-            if report is not None:
-                report(_progress(function, done, generations))
-    return function.front(method, seed, {**limits, **stated})
+    # pymoo's NSGA-III leaves all warnings of the process switched off
+    with warnings.catch_warnings():
+        run.finish(report)
+    return run.front()
+
+
+@dataclass(frozen=True)
+class _Move:
+    """A task to search, before its function is built: what is wrong with the rest comes first."""
+
+    task: PointToPoint
+    profile: JointProfile | None
+    bound: float | None
+    objectives: Sequence[str]
+    threads: int
+
+    def function(self, method: str) -> ProblemFunction:
+        """Build its function; ValueError where there is no box."""
+        # not at the top: pymoo and all that it takes is loaded for a search alone
+        from quietarm.metaheuristics.problems.function import MoveFunction
+
+        profile = self.profile
+        profile = choose_profile(self.task) if profile is None else profile
+        if self.bound is None and profile.default_bound is None:
+            papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
+            raise ValueError(
+                f"{method} searches a box: give a bound on the coefficients (the paper used "
+                f"{papers})"
+            )
+        return MoveFunction(
+            self.task,
+            profile,
+            bound=self.bound,
+            objectives=self.objectives,
+            threads=self.threads,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class SearchRun:
+    """One run of one method on one function: prepared by `begin`, run by `finish`.
+
+    Attributes
+    ----------
+    function : RecordedFunction
+        What is asked, and what it keeps.
+    method : str
+        The method's name.
+    chosen : Algorithm or callable
+        The method itself.
+    limits, stated : mapping
+        The budget, and what the method is set to, for the record.
+    generations, seed : int
+        For the display, and of the random numbers.
+    first : ndarray
+        Rows for the first population.
+    """
+
+    function: RecordedFunction
+    method: str
+    chosen: Any
+    limits: Mapping[str, Any]
+    stated: Mapping[str, Any]
+    generations: int
+    seed: int
+    first: NDArray[np.float64]
+
+    @classmethod
+    def begin(
+        cls,
+        problem: ProblemFunction | _Move,
+        algorithm: str | SearchMethod | Algorithm | None,
+        *,
+        population: int | None = None,
+        generations: int | None = None,
+        evaluations: int | None = None,
+        settings: Mapping[str, object] | None = None,
+        seed: int = 0,
+        start: Front | None = None,
+        noise: float = 0.0,
+        reevaluate: int = 1,
+    ) -> SearchRun:
+        """Prepare a run; arguments and errors as of `search`."""
+        most_generations = 1_000_000
+        # Not at the top: pymoo takes longer to load than all of quietarm; only a search needs it.
+        from quietarm.metaheuristics.problems.recorded import RecordedFunction
+
+        of_move = isinstance(problem, _Move)
+        if of_move:
+            problem = replace(
+                problem,
+                profile=None if problem.profile is None else _profile_of(problem.profile),
+                objectives=checked_objectives(problem.objectives),
+            )
+            limited = bool(problem.task.limits)
+        else:
+            limited = bool(problem.constraints)
+        objectives = len(problem.objectives)
+        if generations is not None and evaluations is not None:
+            raise ValueError("evaluations stand in place of generations; leave one of them out")
+        if not of_move and generations is None and evaluations is None:
+            raise ValueError(
+                "evaluations is missing; give the number of candidates, as evaluations=1000: a "
+                "function may take long"
+            )
+        if algorithm is None:
+            algorithm = DEFAULT if of_move else DEFAULT_OF_FUNCTIONS
+        if isinstance(algorithm, SearchMethod):
+            settings = {name: getattr(algorithm, name) for name in algorithm.defaults()}
+            algorithm = algorithm.name
+        if isinstance(algorithm, str):
+            method = algorithm
+            preset = preset_of(algorithm)
+            preset.refuse_unfit(objectives, noise, of_model=of_move)
+            chosen, stated = _of_preset(
+                preset, limited, population, evaluations, settings, objectives
+            )
+            size = preset.evaluations(stated["population"], 1, objectives)
+            usual = preset.generations
+            if preset.is_function and start is not None:
+                raise ValueError(
+                    f"{method} begins where its seed says; leave the front to start from out"
+                )
+            if preset.is_function and evaluations is None:  # it knows no generations
+                evaluations = preset.generations if generations is None else generations
+                generations = None
+        else:
+            chosen, stated = _of_user(algorithm, population, settings)
+            method = type(chosen).__name__
+            size = 1
+            usual = None
+        generations = usual if generations is None else generations
+        if evaluations is None and generations is None:
+            raise ValueError(f"give the number of generations or of evaluations for {method}")
+        if evaluations is None:
+            generations = whole("generations", generations, 1, most_generations)
+            limits: dict[str, Any] = {"generations": generations}
+        else:
+            evaluations = whole("evaluations", evaluations, 1, MOST_EVALUATIONS)
+            generations = -(-evaluations // size)
+            limits = {"evaluations": evaluations}
+        seed = whole("seed", seed, 0)
+        function = RecordedFunction(
+            problem.function(method) if isinstance(problem, _Move) else problem,
+            budget=evaluations or inf,
+            noise=noise,
+            reevaluate=reevaluate,
+            seed=seed,
+        )
+        first = np.empty((0, len(function.variables)))
+        if start is not None:
+            first = _starts(start, function)
+        return cls(function, method, chosen, limits, stated, generations, seed, first)
+
+    def finish(self, report: Callable[[SearchProgress], None] | None = None) -> None:
+        """Run it to its end."""
+        from quietarm.metaheuristics.problems.recorded import BudgetSpentError
+
+        # a division by a distance of zero is of no concern to a user
+        with np.errstate(all="ignore"), suppress(BudgetSpentError):
+            for done in _run(self.chosen, self.function, self.seed, self.first, self.limits):
+                if report is not None:
+                    report(_progress(self.function, done, self.generations))
+
+    def front(self) -> Front:
+        """Make the front of what was found until now."""
+        return self.function.front(self.method, self.seed, {**self.limits, **self.stated})
 
 
 def _profile_of(profile: object) -> JointProfile:
@@ -273,25 +452,28 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
         archive.seconds,
         function.failed,
         function.infeasible,
-        function.task.plant.tip_unit,
+        *function.units[:2],
+        names=function.objectives[:2],
     )
 
 
 def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
     """Coefficients of a front within the box of a search."""
-    if front.profile != function.profile:
+    same = front.profile == function.profile
+    if not function.of_model:  # of a function the box may be another
+        same = front.coefficients.shape[1] == len(function.variables)
+    if not same:
         raise ValueError("the front to start from has another profile; give one of the search's")
     table = front.coefficients
     if ((table < function.lower) | (table > function.upper)).any():
-        raise ValueError(
-            f"the front to start from is beyond the bound of {function.bound:g}; give a wider one"
-        )
+        box = "bounds" if function.bound is None else f"bound of {function.bound:g}"
+        raise ValueError(f"the front to start from is beyond the {box}; give a wider one")
     return table
 
 
 def _of_preset(
     preset: Preset,
-    task: PointToPoint,
+    limited: bool,
     population: int | None,
     evaluations: int | None,
     settings: Mapping[str, object] | None,
@@ -299,14 +481,14 @@ def _of_preset(
 ) -> tuple[Any, dict[str, Any]]:
     """A method that is known by name, and what it is set to, for so many objectives."""
     most = 100_000
-    if task.limits and not preset.keeps_limits:
+    if limited and not preset.keeps_limits:
         raise ValueError(
             f"{preset.name} cannot search a task with limits; choose another method, or leave "
             "the limits out"
         )
     size = whole(
         "population",
-        preset.population if population is None else population,
+        preset.population_for(evaluations) if population is None else population,
         1 if preset.is_function else 2,
         most,
         f"{most} take 1.6 GB of memory",

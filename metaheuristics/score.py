@@ -30,6 +30,7 @@ from quietarm.ocp.checks import (
     ships,
     takes,
 )
+from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
@@ -264,10 +265,17 @@ def within(points: Array, residuals: Sequence[float] | Array) -> Array:
 
 
 def share_of_box(points: Array, corner: tuple[float, ...]) -> float:
-    """Share of the box from zero to a corner, of all objectives, that points dominate."""
+    """Share of the box from zero to a corner, of all objectives, that points dominate.
+
+    A user's own function may have objectives below zero: its box begins at the least of these.
+    """
     if not len(points):
         return 0.0
-    return float(moocore.hypervolume(points / corner, ref=[1.0] * len(corner)))
+    origin = np.minimum(points.min(axis=0), 0.0)
+    extent = np.array(corner) - origin
+    if not (extent > 0).all():
+        return 0.0
+    return float(moocore.hypervolume((points - origin) / extent, ref=[1.0] * len(corner)))
 
 
 def shares_of_box(front: Front) -> Array:
@@ -340,7 +348,7 @@ def filled(front: Front) -> Array:
     # share by which a motion between may exceed a limit, as those of a reference front
     overrun = 1e-6
     points = objectives(front)
-    if len(points) < 2:
+    if len(points) < 2 or isinstance(front, FunctionFront):  # what lies between would cost calls
         return points
     coefficients = front.coefficients
     pairs = np.array(_neighbours(points))

@@ -26,6 +26,7 @@ from .front.cross_check import cross_check as cross_check
 from .front.epsilon import epsilon_front as epsilon_front
 from .front.front import Front as Front
 from .front.front import reference_corner as reference_corner
+from .front.function_front import FunctionFront as FunctionFront
 from .front.points import FailedPoint as FailedPoint
 from .front.points import FrontPoint as FrontPoint
 from .front.points import Mark as Mark
@@ -33,6 +34,7 @@ from .front.points import non_dominated as non_dominated
 from .front.polish import Gain as Gain
 from .front.polish import Polish as Polish
 from .front.polish import polish_front as polish_front
+from .front.searched_function import NoTaskError as NoTaskError
 from .front.time_front import TimedPoint as TimedPoint
 from .front.time_front import TimeFront as TimeFront
 from .front.time_front import time_front as time_front
@@ -71,6 +73,8 @@ from .robustness import Robustness as Robustness
 from .robustness import Sensitivity as Sensitivity
 from .robustness import Sweep as Sweep
 from .robustness import evaluate_robustness as evaluate_robustness
+from .sent_motion import SentMotion as SentMotion
+from .sent_motion import motion_of as motion_of
 from .simulation.evaluator import Evaluation as Evaluation
 from .simulation.evaluator import Evaluator as Evaluator
 from .simulation.free_vibration import FreeVibration as FreeVibration

@@ -113,6 +113,8 @@ def instance(name: str, value: Any, *kinds: type[T]) -> T:
     """
     if isinstance(value, kinds):
         return value
+    if no_task := getattr(value, "no_task", None):  # of a front of a function
+        raise no_task()
     shown = value.__name__ if isinstance(value, type) else reprlib.repr(value)
     if is_dataclass(value) and not isinstance(value, type):
         shown = f"an object of {type(value).__name__}"  # all of its entries would say less

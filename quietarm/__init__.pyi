@@ -8,6 +8,7 @@ from .machine import Recording as Recording
 from .machine.identify import identify as identify
 from .machine.learn import learn as learn
 from .metaheuristics import Indicator as Indicator
+from .metaheuristics import Search as Search
 from .metaheuristics import SearchMethod as SearchMethod
 from .metaheuristics import search as search
 from .models import ArmOnFlexibleLink as ArmOnFlexibleLink
@@ -44,6 +45,7 @@ from .ocp import epsilon_front as epsilon_front
 from .ocp import evaluate_coefficients as evaluate_coefficients
 from .ocp import evaluate_robustness as evaluate_robustness
 from .ocp import fastest_move as fastest_move
+from .ocp import motion_of as motion_of
 from .ocp import plan_move as plan_move
 from .ocp import plan_moves as plan_moves
 from .ocp import polish_front as polish_front

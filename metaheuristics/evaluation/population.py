@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp import Front, JointProfile, PointToPoint
+from quietarm.ocp.checks import instance
 from quietarm.ocp.objectives import peak_quantities, with_peaks_measured
 from quietarm.ocp.simulation.evaluator import Evaluation, Evaluator
 from quietarm.ocp.simulation.mesh import default_steps
@@ -69,6 +70,7 @@ def figures_of_motions(
     peaks by so many that their nodes miss at most 0.5 % in the boxes of the named problems.
     """
     finer = 192
+    instance("task", front.task, PointToPoint)  # a front of a function has none
     quantities = peak_quantities(front.objectives)
     measured = with_peaks_measured(front.task, quantities)
     steps = max(default_steps(measured), finer) if quantities else None

@@ -14,6 +14,7 @@ from quietarm.ocp import Front, Plan
 from quietarm.ocp.checks import quoted, table_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY, FIGURES
+from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.front.points import refuse_beyond_box
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective, objectives_on
@@ -36,6 +37,8 @@ def agrees(stated: T, gives: T, least: float | Array) -> Any:
 
 def check_figures(front: Front, name: str, remedy: str = "find the front again") -> None:
     """Evaluate motions of a front again, and refuse it where the figures differ."""
+    if isinstance(front, FunctionFront):  # what it states a function gave, which is not here
+        return
     try:
         _check_box(front, front.coefficients)
         _check_points(front)

@@ -54,6 +54,8 @@ class Preset:
         Whether it is for these two objectives alone.
     takes_gradients : bool
         Whether it takes steps of the model's gradient, which no noise reaches.
+    fixed_population : bool
+        Whether the population is the paper's, however few candidates there are.
     most : int
         Most individuals. pymoo's methods compare all pairs: these fill up to 2 GB of memory.
     own : type, optional
@@ -74,6 +76,7 @@ class Preset:
     is_function: bool = False
     residual_and_energy: bool = False
     takes_gradients: bool = False
+    fixed_population: bool = False
     most: int = 10_000
     own: type[SearchMethod] | None = None
 
@@ -195,17 +198,34 @@ class Preset:
         """
         return (objectives if self.by_swarms else 1) * population * generations
 
-    def unfit_for(self, objectives: int, noise: float = 0.0) -> str:
-        """Say why the method does not fit so many objectives, or noise; empty if it fits."""
+    def population_for(self, evaluations: int | None) -> int:
+        """Return the population by default for so many candidates in all; its own without them.
+
+        Of few candidates it is so small that they suffice for 50 generations, and 10 at least.
+        """
+        generations = 50
+        least = 10
+        unknown = not isinstance(evaluations, Integral)  # refused elsewhere, or none at all
+        if unknown or self.fixed_population or self.is_function or self.own is not None:
+            return self.population
+        return min(self.population, max(least, int(evaluations) // generations))
+
+    def unfit_for(self, objectives: int, noise: float = 0.0, of_model: bool = True) -> str:
+        """Say why the method does not fit so many objectives, noise, or a user's own function.
+
+        Empty if it fits.
+        """
         if self.residual_and_energy and objectives > 2:
             return f"{self.name} is for residual and energy alone, not for {objectives} objectives"
+        if self.takes_gradients and not of_model:
+            return f"{self.name} takes steps of a model's gradient, and a function has none"
         if self.takes_gradients and noise > 0:
             return f"{self.name} takes steps of the model's gradient, which has no noise"
         return ""
 
-    def refuse_unfit(self, objectives: int, noise: float = 0.0) -> None:
+    def refuse_unfit(self, objectives: int, noise: float = 0.0, of_model: bool = True) -> None:
         """Refuse a problem that it is not for; ValueError says what to give."""
-        if reason := self.unfit_for(objectives, noise):
+        if reason := self.unfit_for(objectives, noise, of_model):
             raise ValueError(f"{reason}; give another method, as moead-de")
 
     def refuse_less_than_one(self, evaluations: int, population: int, objectives: int = 2) -> None:

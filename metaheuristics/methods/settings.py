@@ -101,6 +101,10 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
         "standard deviation at first, as a share of the box",
         _positive_share,
     ),
+    "first": ("first", "candidates that are drawn at random before the others", _count(2)),
+    "differences": ("differences", "share of the children that take a difference of two", _share),
+    "training": ("training", "most candidates that a model is made of", _count(10)),
+    "pool": ("pool", "random candidates among which the next one is chosen", _count(100)),
     "alpha": ("alpha", "how fast the penalty of an angle grows", positive),
     "adapt_freq": (
         "adaptation",

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.problems.function import MoveFunction
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -29,7 +30,7 @@ from quietarm.ocp import (
     epsilon_front,
     non_dominated,
 )
-from quietarm.ocp.checks import takes, unknown
+from quietarm.ocp.checks import instance, takes, unknown
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives, peak_quantities
@@ -68,6 +69,8 @@ class NamedProblem:
         Of move, profile, box and front; a change of any of them is another version.
     reference_front : Front, optional
         Of a problem of your own; where there is none, the gradient finds it.
+    given : ProblemFunction, optional
+        Of a problem by `of_function`, the function; task and profile are then its box and names.
     """
 
     name: str
@@ -78,6 +81,7 @@ class NamedProblem:
     peak_limits: tuple[float, ...] = ()
     version: int = 1
     reference_front: Front | None = field(default=None, compare=False)
+    given: ProblemFunction | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         file_name = re.compile(r"[^\W_][\w .+=-]*")
@@ -86,7 +90,44 @@ class NamedProblem:
                 f"the name {self.name!r} does not do for a problem; give letters, digits, spaces "
                 "and . + = - _ with a letter or digit first: files are called by it"
             )
-        object.__setattr__(self, "objectives", checked_objectives(self.objectives))
+        if self.given is None:
+            object.__setattr__(self, "objectives", checked_objectives(self.objectives))
+
+    @classmethod
+    @takes(reference_front=Front)
+    def of_function(
+        cls, name: str, function: ProblemFunction | Any, *, reference_front: Front, **settings: Any
+    ) -> NamedProblem:
+        """The problem of a user's own function, for jobs.
+
+        Parameters
+        ----------
+        name : str
+            What it is called.
+        function : callable
+            As of a `GivenFunction`, with whose arguments as `settings`; or one of these.
+        reference_front : Front
+            What runs are measured against, as the front of a long search: there is no gradient that
+            would find it.
+        """
+        from quietarm.metaheuristics.problems.given_function import GivenFunction
+
+        is_problem = isinstance(function, ProblemFunction)
+        given: Any = function if is_problem else GivenFunction(function, **settings)
+        return cls(
+            name,
+            given.task,
+            given.profile,
+            given.bound,
+            objectives=given.objectives,
+            reference_front=reference_front,
+            given=given,
+        )
+
+    @property
+    def limited(self) -> bool:
+        """Return whether candidates may break a limit or a constraint."""
+        return bool(self.task.limits if self.given is None else self.given.constraints)
 
     @classmethod
     @takes(front=Front)
@@ -95,6 +136,7 @@ class NamedProblem:
 
         ValueError when the front states no bound, or has fewer than two points.
         """
+        instance("task", front.task, PointToPoint)  # a front of a function has none
         bound = front.record.bound or front.profile.default_bound
         if bound is None:
             raise ValueError(f"{name} states no bound; give a front that was found within one")
@@ -115,8 +157,10 @@ class NamedProblem:
             return problem_of, (self.name,)
         return type(self), tuple(vars(self).values())
 
-    def function(self, **settings: Any) -> MoveFunction:
+    def function(self, **settings: Any) -> ProblemFunction:
         """The problem as a function of arrays; settings of `MoveFunction`: steps and threads."""
+        if self.given is not None:
+            return self.given
         return MoveFunction(
             self.task,
             self.profile,
@@ -175,11 +219,12 @@ class NamedProblem:
         """
         from quietarm.metaheuristics.problems.recorded import RecordedFunction
 
+        of_move: Any = {
+            "profile": self.profile, "bound": self.bound, "objectives": self.objectives,
+        }  # fmt: skip
         return RecordedFunction(
-            self.task,
-            self.profile,
-            bound=self.bound,
-            objectives=self.objectives,
+            self.task if self.given is None else self.given,
+            **(of_move if self.given is None else {}),
             budget=budget,
             problem=self.name,
             noise=noise,

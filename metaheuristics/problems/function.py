@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +14,10 @@ from quietarm.metaheuristics.evaluation.population import (
     replace_failures,
     search_evaluator,
 )
-from quietarm.ocp import JointProfile, PointToPoint
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction
+from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import takes
+from quietarm.ocp.front.points import FrontPoint, evaluated
 from quietarm.ocp.objectives import (
     RESIDUAL_AND_ENERGY,
     checked_objectives,
@@ -23,12 +26,12 @@ from quietarm.ocp.objectives import (
     with_peaks_measured,
 )
 from quietarm.ocp.planning.choose_profile import choose_profile
-from quietarm.ocp.record import coefficient_bound
+from quietarm.ocp.record import Record, coefficient_bound
 
 Array = NDArray[np.float64]
 
 
-class MoveFunction:
+class MoveFunction(ProblemFunction):
     """The objectives and the violations of a move, for many candidates at once.
 
     All objectives are minimised; a candidate is feasible if no violation is positive.
@@ -123,3 +126,16 @@ class MoveFunction:
         replace_failures(table)
         count = len(self.objectives)
         return table[:, :count], table[:, count:]
+
+    def points_of(
+        self, coefficients: Array, values: Array, bound: float | None
+    ) -> tuple[FrontPoint, ...]:
+        """The points of a front by CVODES, whatever the steps of the search gave."""
+        del values
+        return evaluated(
+            self.task, self.profile, coefficients, bound, objectives=self.objectives
+        ).points
+
+    def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
+        """The front of the move."""
+        return Front(self.task, self.profile, points, record, objectives=self.objectives, **entries)

@@ -1,4 +1,4 @@
-"""A move as a pymoo problem, which knows its reference front."""
+"""A problem as a pymoo problem, which knows its reference front."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 from pymoo.core.problem import Problem
 
-from quietarm.metaheuristics.problems.function import MoveFunction
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 from quietarm.ocp.checks import whole
 
 
 class PymooProblem(Problem):
-    """A move for any algorithm or indicator of pymoo.
+    """A move, or another function, for any algorithm or indicator of pymoo.
 
     ``pareto_front()`` and ``pareto_set()`` give the reference front where one is known, else None.
 
     Parameters
     ----------
-    function : MoveFunction
+    function : ProblemFunction
         What is minimised.
     pareto_set : ndarray, shape (points, variables), optional
         Coefficients of the reference front.
@@ -29,7 +29,7 @@ class PymooProblem(Problem):
 
     def __init__(
         self,
-        function: MoveFunction,
+        function: ProblemFunction,
         pareto_set: NDArray[np.float64] | None = None,
         pareto_front: NDArray[np.float64] | None = None,
     ) -> None:

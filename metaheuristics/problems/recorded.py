@@ -1,4 +1,4 @@
-"""A move's function that keeps what it is asked: by a search of quietarm, or another library's."""
+"""A problem's function that keeps what it is asked, by a search of quietarm or another library."""
 
 from __future__ import annotations
 
@@ -15,13 +15,18 @@ from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.evaluation.noise import Noise, times_evaluated
 from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 from quietarm.ocp import Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import table_of, takes, whole
-from quietarm.ocp.front.points import beyond
+from quietarm.ocp.checks import instance, table_of, takes, whole
+from quietarm.ocp.front.points import FrontPoint, beyond
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record, Setting
 
 Array = NDArray[np.float64]
+_OF_PROBLEM = (
+    "task", "profile", "bound", "lower", "upper", "variables", "objectives", "units", "constraints",
+    "reference",
+)  # fmt: skip
 BLOCK = 10_000
 """Candidates that are evaluated at once: more would fill the memory and be no faster."""
 
@@ -33,14 +38,17 @@ class BudgetSpentError(BaseException):
     """
 
 
-class RecordedFunction(MoveFunction):
-    """A move's function that records every candidate that no earlier one dominates.
+class RecordedFunction(ProblemFunction):
+    """A problem's function that records every candidate that no earlier one dominates.
 
     It has the accuracy of all searches.
 
     Parameters
     ----------
-    task, profile, bound, objectives, threads
+    task : PointToPoint or ProblemFunction
+        The move; or any function of candidates, as a `GivenFunction`, which says all up to
+        `threads` itself.
+    profile, bound, objectives, threads
         As of a `MoveFunction`.
     budget : float
         Evaluations in all: the last call is cut short, and raises `BudgetSpentError`.
@@ -51,7 +59,7 @@ class RecordedFunction(MoveFunction):
         and violations have none. The front at the end has the true values, as ever.
     reevaluate : int
         How often a candidate is evaluated that no earlier one dominates; its mean counts, and each
-        evaluation.
+        evaluation. A user's own function is called again, with or without such noise.
     seed : int
         Seed of the noise.
 
@@ -61,10 +69,10 @@ class RecordedFunction(MoveFunction):
         Candidates so far whose values were not finite, and that violated a limit.
     """
 
-    @takes(task=PointToPoint, profile=JointProfile)
+    @takes(profile=JointProfile)
     def __init__(
         self,
-        task: PointToPoint,
+        task: PointToPoint | ProblemFunction,
         profile: JointProfile | None = None,
         *,
         bound: float | None = None,
@@ -76,13 +84,24 @@ class RecordedFunction(MoveFunction):
         reevaluate: int = 1,
         seed: int = 0,
     ) -> None:
-        super().__init__(task, profile, bound=bound, objectives=objectives, threads=threads)
+        if isinstance(instance("task", task, PointToPoint, ProblemFunction), ProblemFunction):
+            problem_function: Any = task
+        else:
+            problem_function = MoveFunction(
+                task, profile, bound=bound, objectives=objectives, threads=threads
+            )
+        for name in _OF_PROBLEM:
+            setattr(self, name, getattr(problem_function, name))
+        self.asked: ProblemFunction = problem_function
         self.budget = budget if budget == inf else whole("budget", budget, 1)
         self.problem = problem
         self._noise = Noise(noise, whole("seed", seed, 0))
         self.noise = self._noise.share
-        self.reevaluate = times_evaluated(reevaluate, self.noise)
-        self.archive = Archive(task, len(self.variables), self.objectives, noisy=self.noise > 0)
+        differs = self.noise if self.of_model else 1.0
+        self.reevaluate = times_evaluated(reevaluate, differs)
+        self.archive = Archive(
+            self.task, len(self.variables), self.objectives, self.noise > 0, self.reference
+        )
         self.failed = 0
         self.infeasible = 0
         self._idle = 0
@@ -92,7 +111,7 @@ class RecordedFunction(MoveFunction):
 
     @interruptible
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
-        """Evaluate candidates, as `MoveFunction` does, and keep them.
+        """Evaluate candidates, as the problem's function does, and keep them.
 
         ValueError also when a coefficient is beyond the box, or is no number.
         """
@@ -123,7 +142,7 @@ class RecordedFunction(MoveFunction):
         remaining = self.budget - self.archive.evaluations
         count = int(min(remaining, len(table)))
         afforded = np.clip(table[:count], self.lower, self.upper)
-        true, violations = super().__call__(afforded)
+        true, violations = self.asked(afforded)
         failed = np.asarray((true >= UNUSABLE).any(axis=1))
         broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
@@ -131,7 +150,7 @@ class RecordedFunction(MoveFunction):
         objectives = self._noise.of(true, failed)
         if len(afforded):
             usable = np.logical_not(failed | broken)
-            repeated = self._evaluate_again(objectives, true, usable, remaining - count)
+            repeated = self._evaluate_again(afforded, objectives, true, usable, remaining - count)
             without_noise = true if self.noise else None
             self.archive.add(afforded, objectives, usable, without_noise, repeated)
         if len(afforded) < len(table):
@@ -139,7 +158,12 @@ class RecordedFunction(MoveFunction):
         return objectives, violations
 
     def _evaluate_again(
-        self, objectives: Array, true: Array, usable: NDArray[np.bool_], remaining: float
+        self,
+        candidates: Array,
+        objectives: Array,
+        true: Array,
+        usable: NDArray[np.bool_],
+        remaining: float,
     ) -> int:
         """Put means in the place of the objectives of rows that would enter the archive.
 
@@ -154,6 +178,8 @@ class RecordedFunction(MoveFunction):
         for _ in range(self.reevaluate - 1):
             count = int(min(len(rows), remaining - repeated))
             again = true[rows[:count]]
+            if not self.of_model and count:
+                again = self.asked(candidates[rows[:count]])[0]
             totals[:count] += self._noise.of(again, np.zeros(count, dtype=bool))
             times[:count] += 1
             repeated += count
@@ -177,14 +203,29 @@ class RecordedFunction(MoveFunction):
         stated: dict[str, Any] = dict(settings or {})
         if self.problem:
             stated["problem"] = self.problem
-        if self.noise:
+        if self.noise or self.reevaluate > 1:
             stated |= {"noise": self.noise, "reevaluate": self.reevaluate}
         return self.archive.front(
-            self.profile,
+            self.asked,
             Record(method, stated, self.bound, seed),
             failed=self.failed,
             infeasible=self.infeasible,
         )
+
+    @property
+    def of_model(self) -> bool:
+        """Return whether a plant's model stands behind it."""
+        return self.asked.of_model
+
+    def points_of(
+        self, coefficients: Array, values: Array, bound: float | None
+    ) -> tuple[FrontPoint, ...]:
+        """Return the points of a front, as its problem's function makes them."""
+        return self.asked.points_of(coefficients, values, bound)
+
+    def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
+        """Return a front, as its problem's function makes it."""
+        return self.asked.front_with(points, record, **entries)
 
     @interruptible
     def save(self, path: str | Path, method: str, seed: int | None = None) -> None:

@@ -140,6 +140,20 @@ class Front(Answer):
                 "residual and drop dominated ones, as non_dominated(points) does"
             )
 
+    @classmethod
+    def _class_of(cls, content: Mapping[str, Any]) -> type[Any]:
+        """The class of a file's content: a front of a function has that in place of a task."""
+        if "function" not in content:
+            return cls
+        from quietarm.ocp.front.function_front import FunctionFront
+
+        return FunctionFront
+
+    @property
+    def tip_unit(self) -> str:
+        """Unit of the residuals."""
+        return self.task.plant.tip_unit
+
     @property
     def residuals(self) -> NDArray[np.float64]:
         """F1 of every point [m]."""
@@ -328,7 +342,7 @@ class Front(Answer):
         ValueError when there is none, with the least residual there is.
         """
         points = self._nonempty()
-        unit = self.task.plant.tip_unit
+        unit = self.tip_unit
         if residual_limit is None:
             return min(reversed(points), key=_energy)
         if not residual_limit >= 0:  # nor NaN; all of them are below infinity

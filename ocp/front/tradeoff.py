@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.ocp.checks import instance
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.front.front import Front, reference_corner
 from quietarm.ocp.front.points import FailedPoint, FrontPoint, non_dominated, point_of
@@ -91,6 +92,7 @@ class Tradeoff:
         front.smallest_residual()
         seed = front.record.seed or 0
         bound = front.record.bound
+        instance("task", front.task, PointToPoint)  # a front of a function has none
         request = Request(front.task, front.profile, solver, bound, starts, seed, steps)
         if front.objectives == RESIDUAL_AND_ENERGY:
             return cls.begin(request)

@@ -134,7 +134,7 @@ def jobs_of(
             for name in methods:
                 method = NamedMethod.admitted(name, PRESETS)
                 preset = PRESETS.get(method.method)
-                if problem.task.limits and preset is not None and not preset.keeps_limits:
+                if problem.limited and preset is not None and not preset.keeps_limits:
                     left_out[f"{name} knows no limits: left out on {problem.name}"] = None
                     continue
                 unfit = preset.unfit_for(len(problem.objectives), noise) if preset else ""

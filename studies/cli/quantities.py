@@ -373,6 +373,15 @@ def _of_column(quantity: str) -> Mapping[str, float]:
     return OF_OPTIONS[quantity]
 
 
+def parse_sides(text: str) -> float | tuple[float, ...]:
+    """Read a number for all coefficients, or one for each: ``-1,-1,0``."""
+    try:
+        values = tuple(float(number) for number in text.split(","))
+    except ValueError:
+        raise ValueError(f"{text!r} is no list of numbers; give them as -1,-1,0") from None
+    return values if len(values) > 1 else values[0]
+
+
 def parse_objectives(text: str) -> tuple[str, ...]:
     """Read names of objectives: ``residual,energy,peak-torque``."""
     return checked_objectives(text.split(","))

@@ -16,7 +16,8 @@ from quietarm.metaheuristics.run_files import BESIDE_SETTINGS
 from quietarm.metaheuristics.score import CORNER, Scale, filled, objectives, whole_of, within
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, PointToPoint, task_difference
-from quietarm.ocp.checks import takes
+from quietarm.ocp.checks import quoted, takes
+from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.saved import plain
@@ -284,8 +285,13 @@ def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
     for i, (front, name) in enumerate(zip(fronts, names)):
         if not front.points:
             raise ValueError(f"{name} has no finite point; leave it out, or search longer")
-        task = fronts[0].task
-        if difference := task_difference(front.task, task):
+        if isinstance(front, FunctionFront) or isinstance(fronts[0], FunctionFront):
+            _refuse_other_function(front, fronts[0], name, names[0])
+            difference = ""
+        else:
+            difference = task_difference(front.task, fronts[0].task)
+        if difference:
+            task = fronts[0].task
             remedy = "compare fronts of one task"
             if differ_in_window_alone(front.task, task):
                 remedy = f"find it again with --residual-window {task.residual_window:.10g}s"
@@ -301,6 +307,22 @@ def _refuse(fronts: Sequence[Front], names: Sequence[str], apart: int) -> None:
             first = names[list(fronts).index(front)]
             twin = "given twice" if name == first else f"the same front as {first}"
             raise ValueError(f"{name} is {twin}; give every front once")
+
+
+def _refuse_other_function(front: Front, first: Front, name: str, first_name: str) -> None:
+    """Refuse a front of another function, or of a move beside one of a function."""
+    if type(front) is not type(first):
+        raise ValueError(
+            f"{name} and {first_name} are a front of a function and one of a move; compare those "
+            "of one kind"
+        )
+    for entry in ("lower", "upper", "units", "constraints"):
+        own, others = getattr(front.task, entry), getattr(first.task, entry)
+        if own != others:
+            raise ValueError(
+                f"{name} is of another function than {first_name}: its {entry} are "
+                f"{quoted(own)}, not {quoted(others)}; compare fronts of one function"
+            )
 
 
 def differ_in_window_alone(task: PointToPoint, other_task: PointToPoint) -> bool:
@@ -326,6 +348,9 @@ def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
 
 
 def _settings(front: Front) -> dict[str, object]:
+    if isinstance(front, FunctionFront):
+        return {name: value for name, value in front.record.settings.items()
+                if name not in BESIDE_SETTINGS}  # fmt: skip
     profile = plain(front.profile)
     settings = {"bound": front.record.bound, **front.record.settings}
     for name in BESIDE_SETTINGS:  # of a bench's run, and no setting of its method

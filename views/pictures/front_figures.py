@@ -13,6 +13,7 @@ from quietarm.metaheuristics.score import shares_of_box
 from quietarm.metaheuristics.spread import SEARCH_RESIDUAL, Spread, energies_at, hypervolumes
 from quietarm.ocp import Front, Polish
 from quietarm.ocp.checks import takes
+from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.front.tradeoff import RESIDUAL_LIMIT
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.rest import rest_of
@@ -26,6 +27,7 @@ from quietarm.views.pictures.axes import (
     residual_label,
     side_by_side,
 )
+from quietarm.views.pictures.function_figures import draw_function_fronts, facts_of
 from quietarm.views.pictures.grammar import PALE, PLAN, RED, Look, looks, variants
 from quietarm.views.pictures.marked_points import mark_points
 from quietarm.views.pictures.surface_figures import draw_parallel, draw_peak
@@ -244,6 +246,10 @@ def front_figure(fronts: Sequence[Front]) -> Figure:
         there are parallel coordinates as well.
     """
     method = fronts[0].record.method
+    if of_functions := [front for front in fronts if isinstance(front, FunctionFront)]:
+        return draw_function_fronts(
+            of_functions, _names(fronts), _looks_of(fronts), facts_of(fronts)
+        )
     gradient = is_gradient(method)
     panels = 1 + (not gradient and all(front.history for front in fronts))
     panels += panels > 1 and len(fronts) > 1

@@ -171,7 +171,8 @@ def _figures(progress: SearchProgress) -> str:
     seconds_left = progress.seconds * (total - done) / max(done, 1)
     share = progress.infeasible / max(progress.evaluations, 1)
     residual = tip_words(progress.residual, progress.tip_unit)
-    best = f"residual {residual}, energy {progress.energy:.4g} J"
+    first, second = progress.names
+    best = f"{first} {residual}, {second} {progress.energy:.4g} {progress.energy_unit}"
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
@@ -185,7 +186,8 @@ def _brief(progress: SearchProgress) -> str:
     shown, scale = tip_scale(progress.tip_unit)
     return (
         f"{progress.generation}/{progress.generations} {scale * progress.residual:.2g} {shown} "
-        f"{progress.energy:.3g} J hv {progress.hypervolume:.3f} {_speed(progress):.0f}/s"
+        f"{progress.energy:.3g} {progress.energy_unit} hv {progress.hypervolume:.3f} "
+        f"{_speed(progress):.0f}/s"
     )
 
 

@@ -138,11 +138,16 @@ def _judging(given: Given, task: PointToPoint) -> PointToPoint:
 
 
 def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
+    from quietarm.ocp import FunctionFront
     from quietarm.studies.answers.read_answers import load_front
     from quietarm.studies.compare.front_report import compare_by_task, fronts_report
+    from quietarm.studies.compare.function_report import functions_report
     from quietarm.studies.reproduce.paper import paper_points
 
     reference = None if given.reference is None else load_front(given.reference)
+    if any(isinstance(front, FunctionFront) for front in fronts.values()):
+        given.refuse(["free", *_OF_FLOOR], "is for fronts of a move, and these are of a function")
+        return functions_report(fronts, reference, str(given.reference))
     comparisons = compare_by_task(fronts, reference, str(given.reference))
     if given.free:
         solver = given.read_solver()

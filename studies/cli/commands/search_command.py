@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,11 +13,12 @@ import click
 
 from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.named_method import POLISH
-from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
+from quietarm.metaheuristics.run_search import DEFAULT_OF_FUNCTIONS, SECONDS_OF_CANDIDATE
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.effort import refuse_endless
+from quietarm.studies.cli.function_file import FunctionOfFile
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import (
@@ -43,10 +45,11 @@ from quietarm.studies.cli.outputs import (
     finish,
     output_option,
 )
-from quietarm.studies.cli.quantities import read_settings
-from quietarm.studies.cli.types import INPUT
+from quietarm.studies.cli.quantities import parse_sides, read_settings
+from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.front_rows import search_lines
+from quietarm.views.report.function_rows import function_lines
 from quietarm.views.report.progress import search_display
 from quietarm.views.report.saving import STDOUT, File
 
@@ -71,9 +74,18 @@ _BY_GRADIENT = {
     *TASK, *ROBOT_PATH,
     method_option(lambda: [*PRESETS], _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
+    option("--function", type=Parsed("FILE.py:NAME", FunctionOfFile.read), metavar="FILE.py:NAME",
+           help="In place of PLANT: your own function of candidates, as a simulator. The file is "
+           "run: give one that you trust."),
     *profile_options(), BOUND,
+    option("--lower", type=Parsed("numbers", parse_sides), metavar="A,B,...",
+           help="Of --function: the least of each coefficient, as --lower=-1,-1,0. [default: its "
+           "attribute `lower`]"),
+    option("--upper", type=Parsed("numbers", parse_sides), metavar="A,B,...",
+           help="The same for the largest, or one number for all."),
     option("--population", type=int, help="Individuals, or particles in a swarm."),
     option("--generations", type=int, help="Generations."),
+    option("--evaluations", type=int, help="Candidates in all, in place of generations."),
     OBJECTIVES, *NOISE, METHOD_SETTING, SEED,
     option("--runs", default=1,
            help="Seeds, from --seed on; each has a file, as front-seed0.json, once it is done."),
@@ -98,6 +110,7 @@ def search(given: Given) -> None:
           --objectives residual,energy,peak-torque --output front.json --output front.png
       quietarm search single-link --target pi/6 --duration 0.8 --bound 0.2 --noise 1% \\
           --reevaluate 5
+      quietarm search --function simulator.py:measure --lower=-1,-1 --upper 1 --evaluations 200
     """  # noqa: D301  # \b is click's: do not rewrap
     several = given.runs > 1
     if several and STDOUT in given.output:
@@ -106,35 +119,31 @@ def search(given: Given) -> None:
     # not at the top: --help needs it not
     from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
 
-    task = given.read_task()
-    profile = given.read_profile(task)
-    chosen = ("bound", "population", "generations", "objectives", "noise", "reevaluate")
-    options = given.pick(*chosen) | {
-        "profile": profile,
+    asked = _function(given) if given.function else _move(given)
+    options = given.pick("population", "generations", "evaluations", "noise", "reevaluate") | {
         "settings": read_settings(given.settings),
         "start": None if given.start_front is None else load_front(given.start_front),
     }
-    if given.bound is None and profile.default_bound is None:
-        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
-        raise click.UsageError(
-            f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
-        )
+    asked.options.update(options)
+    method = asked.method
     workers = given.workers
     first = whole("seed", given.seed, 0)
     seeds = range(first, first + whole("runs", given.runs, 1, 10_000))
-    preset = PRESETS[given.method]
+    preset = PRESETS[method]
     population = given.population or preset.population
     generations = given.generations or preset.generations
-    of_run = preset.evaluations(population, generations, len(given.objectives))
+    objectives = len(given.objectives)
+    of_run = given.evaluations or preset.evaluations(population, generations, objectives)
     candidates = len(seeds) * of_run * given.reevaluate
-    refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
+    if not given.function:  # how long a user's own takes nobody knows
+        refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     fronts = list[Front]()
     trouble: QuietarmError | None = None
     with search_display(progress_console()) as display:
         if not several and workers == 1:
-            options["report"] = display
+            asked.options["report"] = display
         try:
-            run = partial(_search, task, given.method, options)
+            run = partial(_search, asked)
             for front in side_by_side(run, seeds, workers):
                 fronts.append(front)
                 if several:
@@ -150,19 +159,65 @@ def search(given: Given) -> None:
                 trouble = QuietarmError(f"{error}: {done}")
     fronts.sort(key=lambda front: front.record.seed or 0)
     if not any(front.points for front in fronts):
-        raise trouble or SolverFailedError(f"{given.method}: {fronts[0].why_empty()}")
+        raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
     finish(
         _files(given.output, fronts, several),
-        *search_lines(fronts),
+        *(function_lines(fronts) if given.function else search_lines(fronts)),
         *given.remarks,
         trouble=trouble,
     )
 
 
-def _search(task: PointToPoint, method: str, options: dict[str, Any], seed: int) -> Front:
+@dataclass
+class _Asked:
+    """What is searched, a task or a function of a file, by which method, with options of both."""
+
+    what: PointToPoint | FunctionOfFile
+    method: str
+    options: dict[str, Any]
+
+
+def _move(given: Given) -> _Asked:
+    """The move that was typed, with its profile and its box."""
+    given.refuse(["lower", "upper"], "is for --function, and this is a move with a --bound")
+    task = given.read_task()
+    profile = given.read_profile(task)
+    if given.bound is None and profile.default_bound is None:
+        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
+        raise click.UsageError(
+            f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
+        )
+    return _Asked(task, given.method, {"profile": profile, **given.pick("bound", "objectives")})
+
+
+_OF_FUNCTIONS = (
+    "function", "lower", "upper", "method", "population", "generations", "evaluations", "noise",
+    "reevaluate", "settings", "seed", "runs", "start_front", "workers", "yes", "output", "quiet",
+    "plant_file",
+)  # fmt: skip
+"""Options that a function has."""
+
+
+def _function(given: Given) -> _Asked:
+    """The function that was typed; its file is run."""
+    given.refuse_others(
+        _OF_FUNCTIONS, "is for a move, and --function is a function alone, with its own attributes"
+    )
+    for path in given.output:
+        if ending_of(path) not in (".json", ".csv", PICTURE):
+            raise ValueError(
+                f"{path} is for a front of a move; of a function give a .json, .csv or a picture"
+            )
+    given.function.load()  # what is wrong with the file is said before anything else
+    method = given.method if given.typed("method") else DEFAULT_OF_FUNCTIONS
+    return _Asked(given.function, method, given.pick("lower", "upper"))
+
+
+def _search(asked: _Asked, seed: int) -> Front:
     from quietarm.metaheuristics import search
 
-    return search(task, algorithm=method, seed=seed, **options)
+    what = asked.what.load() if isinstance(asked.what, FunctionOfFile) else asked.what
+    return search(what, algorithm=asked.method, seed=seed, **asked.options)
 
 
 def _save_at_once(output: Sequence[Path], front: Front) -> None:

@@ -1,0 +1,302 @@
+"""A user's own function as a problem: any simulator, or a machine that is measured."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quietarm.interrupts import interruptible
+from quietarm.metaheuristics.evaluation.population import replace_failures
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction
+from quietarm.ocp import Front
+from quietarm.ocp.checks import clipped, numbers, table_of, whole, words_of_error
+from quietarm.ocp.front.function_front import FunctionFront, FunctionPoint, ordered_points
+from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.searched_function import SearchedFunction
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
+from quietarm.ocp.record import Record
+
+Array = NDArray[np.float64]
+Function = Callable[..., Any]
+_ALL_FAILED = 20
+"""A function that gives no finite number for so many first candidates is refused."""
+
+
+class _UnfitError(ValueError):
+    """A function returns what is no objectives and violations."""
+
+
+class GivenFunction(ProblemFunction):
+    """A user's own function of candidates, with its box and the names of what it returns.
+
+    The function runs in this process, with all that its author wrote into it.
+
+    Parameters
+    ----------
+    function : callable
+        Of many candidates, an array of shape (candidates, coefficients), to their objectives, an
+        array of shape (candidates, objectives); or of one candidate, a row, to its objectives. With
+        constraints it returns a pair: the objectives, and the violations in the same form, positive
+        where a constraint is broken. What is not finite counts as failed.
+    lower, upper : array_like, optional
+        The box, a number for each coefficient; one of them may be a single number.
+    objectives : sequence of str
+        Names of what is minimised, two at least.
+    units : sequence of str, optional
+        Unit of each; m and J of residual and energy by default, and none of others.
+    constraints : sequence of str
+        Names of the violations.
+    reference : sequence of float, optional
+        The corner that hypervolumes are measured from; by default the largest values of candidates
+        that no earlier one dominated.
+    vectorized : bool, optional
+        Whether it takes many candidates at once. Where this is not said, the function is called
+        with an array of one row first, and with the row alone where that does not fit.
+    threads : int
+        Calls at the same time: of blocks of candidates, or of candidates.
+    name : str, optional
+        What a front calls it; the function's own name by default.
+
+    Raises
+    ------
+    ValueError
+        When the box or a name is missing, or a name or number does not fit.
+
+    Notes
+    -----
+    Where ``lower``, ``upper``, ``objectives``, ``units``, ``constraints``, ``reference`` or
+    ``vectorized`` is not given, the function's attribute of that name counts.
+    """
+
+    def __init__(
+        self,
+        function: Function,
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+        objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
+        units: Sequence[str] | None = None,
+        constraints: Sequence[str] | None = None,
+        reference: Sequence[float] | None = None,
+        vectorized: bool | None = None,
+        threads: int = 1,
+        name: str = "",
+    ) -> None:
+        def stated(name: str, given: Any, otherwise: Any = None) -> Any:
+            own = getattr(function, name, None) if given is None else given
+            return otherwise if own is None else own
+
+        if not callable(function):
+            raise TypeError(f"function is {function!r}; give a function of candidates")
+        names = None if objectives is RESIDUAL_AND_ENERGY else objectives
+        self.task = self.profile = self.searched = SearchedFunction(
+            name or name_of(function),
+            stated("lower", lower),
+            stated("upper", upper),
+            stated("objectives", names, RESIDUAL_AND_ENERGY),
+            stated("units", units, ()),
+            stated("constraints", constraints, ()),
+        )
+        self.bound = None
+        self.lower = np.array(self.searched.lower)
+        self.upper = np.array(self.searched.upper)
+        self.variables = self.searched.variables
+        self.objectives = self.searched.objectives
+        self.units = self.searched.units
+        self.constraints = self.searched.constraints
+        self.reference = _corner(stated("reference", reference), self.objectives)
+        self.threads = whole("threads", threads, 1, 1_000)
+        self._function = function
+        self._vectorized: bool | None = stated("vectorized", vectorized)
+        self._failed_at_first: int | None = 0
+
+    @property
+    def of_model(self) -> bool:
+        """Return False: it may give another value the next time."""
+        return False
+
+    @interruptible
+    def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
+        """Evaluate candidates, one a row, by calls of the function.
+
+        A candidate whose values are not finite has 1e30 everywhere, so that it comes last.
+        """
+        table = table_of(candidates, len(self.variables))
+        values = np.empty((0, len(self.objectives) + len(self.constraints)))
+        if len(table):
+            values = self._values(table)
+        failed = replace_failures(values)
+        self._refuse_all_failed(failed)
+        count = len(self.objectives)
+        return values[:, :count].copy(), values[:, count:].copy()
+
+    def points_of(
+        self, coefficients: Array, values: Array, bound: float | None
+    ) -> tuple[FrontPoint, ...]:
+        """The points of a front, with the values that the function gave."""
+        del bound
+        others = self.objectives[2:]
+        points = [
+            FunctionPoint(tuple(row), first, second, peaks=dict(zip(others, more)))
+            for row, (first, second, *more) in zip(coefficients.tolist(), values.tolist())
+        ]
+        return ordered_points(points, self.objectives)
+
+    def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
+        """The front of the function."""
+        of_function: Any = points
+        return FunctionFront(points=of_function, record=record, function=self.searched, **entries)
+
+    def _values(self, table: Array) -> Array:
+        """Objectives and violations of some candidates, as rows."""
+        if self._vectorized is None:
+            first = self._first(table[:1])
+            return np.vstack([first, self._values(table[1:])]) if len(table) > 1 else first
+        if not self._vectorized:
+            return np.vstack(self._side_by_side(self._one, list(table)))
+        blocks = np.array_split(table, min(self.threads, len(table)))
+        return np.vstack(self._side_by_side(self._many, blocks))
+
+    def _side_by_side(self, call: Callable[[Array], Array], parts: Sequence[Array]) -> list[Array]:
+        if self.threads == 1 or len(parts) == 1:
+            return [call(part) for part in parts]
+        with ThreadPoolExecutor(self.threads) as pool:
+            return list(pool.map(call, parts))
+
+    def _first(self, row: Array) -> Array:
+        """Values of the first candidate; from now on it is known how the function is called."""
+        try:
+            values = self._many(row)
+            self._vectorized = True
+        except ValueError as as_array:
+            try:
+                values = self._one(row[0])
+            except _UnfitError:
+                raise
+            except ValueError as alone:
+                if str(alone) == str(as_array):
+                    raise
+                raise ValueError(
+                    f"{alone} (called with one candidate; with an array of them: {as_array})"
+                ) from None
+            self._vectorized = False
+        return values
+
+    def _many(self, table: Array) -> Array:
+        """Values of many candidates by one call."""
+        objectives, violations = self._called(table.copy())
+        count = len(table)
+        shapes = (count, len(self.objectives)), (count, len(self.constraints))
+        return np.column_stack(
+            [
+                self._shaped(objectives, shapes[0], "objectives"),
+                self._shaped(violations, shapes[1], "violations"),
+            ]
+        )
+
+    def _one(self, row: Array) -> Array:
+        """Values of one candidate, as a table of one row."""
+        objectives, violations = self._called(row.copy())
+        if violations is not None and np.ndim(violations) == 0:
+            violations = [violations]
+        found = [
+            self._shaped(objectives, (len(self.objectives),), "objectives"),
+            self._shaped(violations, (len(self.constraints),), "violations"),
+        ]
+        return np.concatenate(found)[None]
+
+    def _called(self, argument: Array) -> tuple[Any, Any]:
+        """Objectives, and violations where there are constraints, as the function returns them."""
+        try:
+            result = self._function(argument)
+        except Exception as error:
+            raise self._failed(error) from error
+        if isinstance(result, tuple) and len(result) == 2 and self._is_pair(result):
+            return result
+        if self.constraints:
+            raise _UnfitError(
+                f"{self._name} returns {_kind(result)}; with constraints give two: (objectives, "
+                "violations)"
+            )
+        return result, None
+
+    def _is_pair(self, result: tuple[Any, Any]) -> bool:
+        """Return whether a tuple of two is objectives with violations, not two objectives."""
+        return bool(self.constraints) or (isinstance(result[1], list | tuple) and not result[1])
+
+    def _shaped(self, values: Any, shape: tuple[int, ...], what: str) -> Array:
+        if values is None or (0 in shape and np.size(values) == 0):
+            values = np.empty(shape)
+        wanted = f"numbers of shape {shape}"
+        try:
+            table = numbers(what, values, wanted, infinite=True)
+        except ValueError as error:
+            raise _UnfitError(f"{self._name}: {error}") from None
+        if table.shape != shape:
+            names = self.objectives if what == "objectives" else self.constraints
+            raise _UnfitError(
+                f"{self._name} returns {what} of shape {table.shape}, not {shape}; give "
+                f"{', '.join(names) or 'none'} in this order for each candidate"
+            )
+        return table
+
+    def _failed(self, error: Exception) -> ValueError:
+        """The function's own error, in one line with its place."""
+        code = getattr(self._function, "__code__", None)
+        file = code.co_filename if code else getattr(
+            sys.modules.get(type(self._function).__module__), "__file__", None
+        )  # fmt: skip
+        frames = traceback.extract_tb(error.__traceback__)
+        lines = [frame.lineno for frame in frames if frame.filename == file]
+        place = f" ({file}, line {lines[-1]})" if lines else ""
+        return ValueError(
+            f"{self._name}{place} fails: {words_of_error(error)}; mend it, or return nan for a "
+            "candidate that cannot be evaluated"
+        )
+
+    @property
+    def _name(self) -> str:
+        return f"function {clipped(self.searched.name)}"
+
+    def _refuse_all_failed(self, failed: NDArray[np.bool_]) -> None:
+        """Refuse a function whose first candidates all fail, rather than search for hours."""
+        if self._failed_at_first is None or not len(failed):
+            return
+        if not failed.all():
+            self._failed_at_first = None
+            return
+        self._failed_at_first += len(failed)
+        if self._failed_at_first >= _ALL_FAILED:
+            raise ValueError(
+                f"{self._name} gives no finite numbers (nan or infinite) for the first "
+                f"{self._failed_at_first} candidates; mend it, or give other bounds"
+            )
+
+
+def name_of(function: Function) -> str:
+    """The name of a function, or of the class of an object that is called."""
+    inner = getattr(function, "func", function)  # of functools.partial
+    name = getattr(inner, "__name__", type(inner).__name__)
+    return "function" if name == "<lambda>" else name
+
+
+def _corner(reference: Any, objectives: Sequence[str]) -> tuple[float, ...] | None:
+    if reference is None:
+        return None
+    corner = numbers("reference", reference, "a number for each objective").ravel()
+    if len(corner) != len(objectives):
+        raise ValueError(
+            f"reference has {len(corner)} numbers; give one for each of {', '.join(objectives)}"
+        )
+    return tuple(corner.tolist())
+
+
+def _kind(result: Any) -> str:
+    """Say in a word or two what was returned."""
+    return "nothing" if result is None else f"one {type(result).__name__}"

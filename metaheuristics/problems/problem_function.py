@@ -1,0 +1,72 @@
+"""Functions of candidates, which every search, bench and recorder asks, whatever is behind them.
+
+A move that quietarm simulates is one kind, a user's own function another.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quietarm.ocp import Front
+from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.record import Record
+
+Array = NDArray[np.float64]
+
+
+class ProblemFunction(ABC):
+    """Objectives and violations of many candidates at once; all objectives are minimised.
+
+    Attributes
+    ----------
+    task : PointToPoint or SearchedFunction
+        The move; of a user's own function its names and its box.
+    profile : JointProfile or SearchedFunction
+        What the coefficients are of.
+    bound : float or None
+        Largest absolute coefficient, where the box has one for all.
+    lower, upper : ndarray, shape (variables,)
+        The box of the coefficients.
+    variables, objectives, units, constraints : tuple of str
+        Names, in the order of the columns, and the units of the objectives.
+    reference : tuple of float or None
+        The corner that hypervolumes are measured from; None where it follows from what is found.
+    """
+
+    task: Any
+    profile: Any
+    bound: float | None
+    lower: Array
+    upper: Array
+    variables: tuple[str, ...]
+    objectives: tuple[str, ...]
+    units: tuple[str, ...]
+    constraints: tuple[str, ...]
+    reference: tuple[float, ...] | None = None
+
+    @property
+    def of_model(self) -> bool:
+        """Return whether a plant's model stands behind it: it has a gradient, and no surprises."""
+        return True
+
+    @abstractmethod
+    def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
+        """Evaluate candidates, one a row.
+
+        Objectives of shape (candidates, objectives), and violations of shape (candidates,
+        constraints): positive where a constraint is broken.
+        """
+
+    @abstractmethod
+    def points_of(
+        self, coefficients: Array, values: Array, bound: float | None
+    ) -> tuple[FrontPoint, ...]:
+        """Return the points of a front, of candidates and what they were worth to the search."""
+
+    @abstractmethod
+    def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
+        """Return a front of these points, with further entries as of a `Front`."""

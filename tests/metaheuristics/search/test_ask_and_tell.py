@@ -1,0 +1,140 @@
+"""Hardware in the loop: a search that is asked and told, and goes on after a kill."""
+
+import dataclasses
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import quietarm as qa
+
+SCRIPT = """
+import os, signal, sys
+import quietarm as qa
+
+def measure(x):
+    return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2], [x[0] - 1]
+
+state, method, killed = sys.argv[1], sys.argv[2], int(sys.argv[3])
+search = qa.Search(
+    [-5, -5], 5, evaluations=45, algorithm=method, constraints=["wall"], state=state, seed=3
+)
+told = 0
+while (candidate := search.ask()) is not None:
+    search.tell(candidate, *measure(candidate))
+    told += 1
+    if told == killed:
+        os.kill(os.getpid(), signal.SIGKILL)
+search.front().save(sys.argv[4])
+"""
+
+
+def measure(x):
+    return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2], [x[0] - 1]
+
+
+def search_of(method="es", **more):
+    return qa.Search(
+        [-5, -5], 5, evaluations=45, algorithm=method, constraints=["wall"], seed=3, **more
+    )
+
+
+def run(search):
+    while (candidate := search.ask()) is not None:
+        search.tell(candidate, *measure(candidate))
+    return search.front()
+
+
+@pytest.mark.slow  # three processes
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_a_killed_process_goes_on_to_the_answer_of_an_uninterrupted_one(tmp_path):
+    state, end = tmp_path / "run.json", tmp_path / "front.json"
+    folder = Path(qa.__file__).parents[1]
+    line = [sys.executable, "-c", SCRIPT, str(state), "nsga2"]
+    for killed in (17, 0):
+        ended = subprocess.run([*line, str(killed), str(end)], cwd=folder, check=False)
+        assert ended.returncode == (-signal.SIGKILL if killed else 0)
+        assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+    assert qa.Front.load(end) == run(search_of("nsga2"))
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("method", ["es", "nsga2", "slsqp", "mo-cma-es"])
+def test_it_goes_on_in_the_middle_of_a_generation_and_asks_what_a_search_asks(method, tmp_path):
+    state = tmp_path / "run.json"
+    for count in (1, 13):  # abandoned twice
+        begun = search_of(method, state=state)
+        for _ in range(count):
+            candidate = begun.ask()
+            begun.tell(candidate, *measure(candidate))
+        begun.close()
+    continued = search_of(method, state=state)
+    assert 10 <= continued.evaluations <= 14
+    whole = run(continued)
+    assert continued.done
+    assert whole == run(search_of(method))
+
+    def measured(x):
+        return measure(x)
+
+    direct = qa.search(
+        measured, lower=[-5, -5], upper=5, evaluations=45, algorithm=method,
+        constraints=["wall"], seed=3,
+    )  # fmt: skip
+    assert dataclasses.replace(direct, function=whole.function) == whole
+
+
+def test_several_candidates_may_be_measured_side_by_side_in_any_order():
+    together = search_of("nsga2")
+    while len(rows := together.ask(4)):
+        assert len(rows) <= 4
+        rows = rows[::-1]
+        values = [measure(row) for row in rows]
+        together.tell(rows, [value for value, _ in values], [broken for _, broken in values])
+    assert together.front() == run(search_of("nsga2"))
+
+
+def test_a_candidate_is_asked_for_until_it_is_told_and_failures_are_counted():
+    search = search_of("nsga2")
+    assert search.ask().tolist() == search.ask().tolist()
+    first = search.ask()
+    search.tell(first, [np.nan, np.inf], [0.0])
+    assert search.ask().tolist() != first.tolist()
+    while (candidate := search.ask()) is not None:
+        search.tell(candidate, *measure(candidate))
+    assert search.front().failed == 1
+
+
+@pytest.mark.parametrize(
+    ("told", "words"),
+    [
+        (([9.0, 9.0], [1.0, 1.0], [0.0]), "was not asked for"),
+        ((None, [1.0], [0.0]), "objectives have shape"),
+        ((None, [1.0, 2.0], None), "violations are missing"),
+        ((None, ["one", 2.0], [0.0]), "objectives are"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_in_one_line(told, words):
+    search = search_of()
+    candidate, objectives, violations = told
+    candidate = search.ask() if candidate is None else candidate
+    with pytest.raises(ValueError, match=words) as refused:
+        search.tell(candidate, objectives, violations)
+    assert "\n" not in str(refused.value)
+    search.tell(search.ask(), *measure(search.ask()))  # and it goes on
+
+
+def test_a_state_of_another_search_is_refused(tmp_path):
+    state = tmp_path / "run.json"
+    begun = search_of(state=state)
+    begun.tell(begun.ask(), *measure(begun.ask()))
+    with pytest.raises(ValueError, match="its method differs"):
+        search_of("nsga2", state=state)
+    state.write_text("{}")
+    with pytest.raises(ValueError, match="is not a search"):
+        search_of(state=state)
+    with pytest.raises(TypeError, match="give a name"):
+        search_of(object())

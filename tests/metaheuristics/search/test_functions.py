@@ -1,0 +1,251 @@
+"""A user's own function in the place of a task: searched, saved, compared, refused in a line."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import quietarm as qa
+from quietarm.metaheuristics import PRESETS, Job, MoveFunction, NamedProblem, run_jobs
+from quietarm.ocp import FunctionFront, NoTaskError
+from quietarm.studies.compare import compare_fronts
+
+BOX = {"lower": [-5.0, -5.0], "upper": 5.0}
+SIXTH = qa.PointToPoint(qa.SingleLinkManipulator(), target=qa.deg(30), duration=0.8)
+
+
+def parabolas(x):
+    """Of one candidate; the front is the line from (0, 0) to (2, 0), with f2 = (2 - sqrt(f1))^2."""
+    return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2]
+
+
+def many(x):
+    return np.column_stack([x[:, 0] ** 2 + x[:, 1] ** 2, (x[:, 0] - 2) ** 2 + x[:, 1] ** 2])
+
+
+def limited(x):
+    """Feasible where x_1 is 1 or less: there the front ends at (1, 1)."""
+    return parabolas(x), [x[0] - 1]
+
+
+def test_a_function_of_one_candidate_and_one_of_an_array_give_one_front():
+    one = qa.search(parabolas, **BOX, evaluations=300, algorithm="es")
+    array = qa.search(many, **BOX, evaluations=300, algorithm="es")
+    assert one.record.evaluations == 300
+    assert one.coefficients.tolist() == array.coefficients.tolist()
+    first, second = one.objective_values.T
+    np.testing.assert_array_less((2 - np.sqrt(first)) ** 2 - 1e-9, second)
+    assert np.median(second - (2 - np.sqrt(first)) ** 2) < 0.1
+
+
+@pytest.mark.slow_after(2)
+@pytest.mark.parametrize("method", ["es", "nsga2", "slsqp", "random"])
+def test_constraints_hold_in_what_every_kind_of_method_finds(method):
+    front = qa.search(
+        limited, **BOX, constraints=["wall"], objectives=("way", "work"), units=("mm", "J"),
+        evaluations=150, algorithm=method, seed=1,
+    )  # fmt: skip
+    assert front.points
+    assert front.infeasible > 0
+    assert (front.coefficients[:, 0] <= 1).all()
+    assert list(front.columns()) == ["way_mm", "work_J", "a_1", "a_2"]
+
+
+def test_attributes_of_the_function_say_what_no_argument_says():
+    def sizes(x):
+        return [abs(x[0]), abs(x[1]), -x.sum()]
+
+    sizes.lower, sizes.upper = (-1, -1), (1, 2)
+    sizes.objectives = ("one", "other", "gain")
+    front = qa.search(sizes, evaluations=100, population=10)
+    assert front.objectives == ("one", "other", "gain")
+    assert front.objective_values[:, 2].min() < 0  # below zero is no error
+    assert front.task.upper == (1.0, 2.0)
+    assert front.task.name == "sizes"
+
+
+def test_a_front_of_a_function_is_saved_loaded_compared_and_written_as_a_table(tmp_path):
+    fronts = [qa.search(parabolas, **BOX, evaluations=100, population=10, seed=s) for s in (0, 1)]
+    fronts[0].save(tmp_path / "front.json")
+    loaded = qa.Front.load(tmp_path / "front.json")
+    assert loaded == fronts[0]
+    assert isinstance(loaded, FunctionFront)
+    loaded.save_csv(tmp_path / "front.csv")
+    assert (tmp_path / "front.csv").read_text().startswith("residual_m,energy_J,a_1,a_2\n")
+    comparison = compare_fronts([loaded, fronts[1]])
+    assert [len(group.runs) for group in comparison.groups] == [2]
+    drawn = qa.pictures.front_figure(fronts)
+    assert drawn.axes[0].get_xlabel() == "residual [m]"
+    again = qa.search(parabolas, **BOX, evaluations=50, population=10, start=loaded)
+    assert again.residuals.min() <= loaded.residuals.min()
+
+
+def test_what_needs_a_task_says_so_in_one_line(tmp_path):
+    front = qa.search(parabolas, **BOX, evaluations=50, population=10)
+    move = qa.search(SIXTH, qa.CycloidPolynomial(2), bound=0.2, evaluations=50, population=10)
+    needs = [
+        lambda: front.task.plant,
+        lambda: front.judged(front.points[0]),
+        lambda: qa.polish_front(front),
+        lambda: qa.evaluate_coefficients(front.task, front.points[0].coefficients),
+        lambda: NamedProblem.of_front("mine", front).front().task.duration,
+    ]
+    for need in needs:
+        with pytest.raises((NoTaskError, ValueError), match=r"function|bound") as refused:
+            need()
+        assert "\n" not in str(refused.value)
+    with pytest.raises(ValueError, match="one of a move"):
+        compare_fronts([front, move])
+
+
+def test_noise_and_evaluations_of_what_is_kept_are_those_of_tasks():
+    calls = []
+
+    def counted(x):
+        calls.append(len(x))
+        return many(x)
+
+    noisy = qa.search(counted, **BOX, evaluations=120, population=20, noise=0.1, vectorized=True)
+    assert sum(calls) == 120
+    assert noisy.entries.believed
+    first = noisy.points[0]  # the true values, not what was believed
+    assert parabolas(first.coefficients) == pytest.approx([first.residual, first.energy])
+    calls.clear()
+    again = qa.search(counted, **BOX, evaluations=120, population=20, reevaluate=3, vectorized=True)
+    assert sum(calls) == again.record.evaluations == 120
+    assert len([count for count in calls if count < 20]) > 6
+
+
+def test_threads_call_a_function_of_one_candidate_at_the_same_time():
+    from threading import Barrier
+
+    meets = Barrier(4, timeout=20)  # breaks unless four calls wait at once
+
+    def slow(x):
+        meets.wait()
+        return parabolas(x)
+
+    front = qa.search(
+        slow, **BOX, evaluations=16, population=8, algorithm="random", threads=4, vectorized=False
+    )
+    alone = qa.search(parabolas, **BOX, evaluations=16, population=8, algorithm="random")
+    assert front.coefficients.tolist() == alone.coefficients.tolist()
+
+
+@pytest.mark.slow
+def test_jobs_of_a_function_are_files_that_a_second_run_finds(tmp_path):
+    reference = qa.search(parabolas, **BOX, evaluations=600, algorithm="es")
+    problem = NamedProblem.of_function("parabolas", parabolas, **BOX, reference_front=reference)
+    jobs = [Job(problem, method, 0, 60) for method in ("nsga2", "es")]
+    done = run_jobs(jobs, tmp_path)
+    assert run_jobs(jobs, tmp_path) == done
+    with pytest.raises(ValueError, match="has none; give a search"):
+        Job(problem, "epsilon")
+
+
+def broken(x):
+    return x[0] / 0.0 * np.array([1, 1]) if x[0] > 9 else 1 / 0
+
+
+@pytest.mark.parametrize(
+    ("function", "more", "words"),
+    [
+        (parabolas, {"lower": None}, "lower is missing"),
+        (parabolas, {"upper": [1.0, 2.0, 3.0]}, "lower has 2 numbers and upper 3"),
+        (parabolas, {"upper": -6}, "lower one that is less"),
+        (parabolas, {"lower": -1.0}, "single numbers"),
+        (parabolas, {"evaluations": None}, "evaluations is missing"),
+        (parabolas, {"bound": 0.2}, "bound is for a task"),
+        (parabolas, {"objectives": ["one"]}, "give two or more"),
+        (parabolas, {"units": ["m"]}, "2 objectives have 1 units"),
+        (parabolas, {"constraints": ["wall"]}, "with constraints give two"),
+        (parabolas, {"algorithm": "memetic"}, "a function has none"),
+        (lambda x: [1.0, 2.0, 3.0], {}, r"objectives of shape \(3,\), not \(2,\)"),
+        (lambda x: [np.nan, 1.0], {}, "no finite numbers"),
+        (lambda x: ["one", 1.0], {}, "give numbers"),
+        (broken, {}, r"test_functions.py, line \d+\) fails: ZeroDivisionError"),
+    ],
+)
+def test_refusals_are_one_line(function, more, words):
+    options = {**BOX, "evaluations": 40, "population": 20, **more}
+    with pytest.raises(ValueError, match=words) as refused:
+        qa.search(function, **options)
+    assert "\n" not in str(refused.value)
+
+
+def test_what_is_of_a_function_is_refused_for_a_task():
+    with pytest.raises(ValueError, match="lower is for a function"):
+        qa.search(SIXTH, lower=[0.0], bound=0.2)
+
+
+def test_a_candidate_that_fails_is_counted_and_comes_last():
+    def fails_beside(x):
+        return [np.nan, np.inf] if x[1] > 0 else parabolas(x)
+
+    front = qa.search(fails_beside, **BOX, evaluations=100, population=20)
+    assert 0 < front.failed < 100
+    assert (front.coefficients[:, 1] <= 0).all()
+
+
+def test_few_candidates_have_a_small_population_unless_it_is_the_papers():
+    # 50 generations, 10 individuals at least, and the preset's from 5,000 candidates on
+    sizes = [PRESETS["nsga2"].population_for(count) for count in (200, 1_000, 5_000, 40_000)]
+    assert sizes == [10, 20, 100, 100]
+    assert PRESETS["nsga2-paper"].population_for(200) == 200
+    front = qa.search(parabolas, **BOX, evaluations=60, algorithm="nsga2")
+    assert front.record.settings["population"] == 10
+
+
+def test_an_energy_in_numpy_is_that_of_the_simulated_samples():
+    profile = qa.CycloidPolynomial(3)
+
+    def absolute(samples):
+        return samples.integral(np.abs(samples.power))
+
+    candidates = np.random.default_rng(0).uniform(-0.2, 0.2, (4, 3))
+    own = qa.metaheuristics.OwnEnergyFunction(SIXTH, profile, bound=0.2, energy=absolute)
+    known = MoveFunction(SIXTH, profile, bound=0.2)(candidates)[0]
+    # the same integral but for the zeros of the power, which MoveFunction resolves
+    np.testing.assert_allclose(own(candidates)[0], known, rtol=2e-3)
+
+    def sway(samples):
+        assert samples.W.shape == samples.dW.shape == (len(samples.torque), 1, len(samples.time))
+        return samples.integral((samples.tips**2).sum(axis=1))
+
+    front = qa.search(SIXTH, profile, bound=0.2, energy=sway, evaluations=60, population=10)
+    assert front.task.name == "sway of single-link"
+    with pytest.raises(ValueError, match="give one energy for each of"):
+        qa.search(
+            SIXTH, profile, bound=0.2, energy=lambda s: s.power, evaluations=20, population=10
+        )
+
+
+def test_the_path_of_a_candidate_is_that_of_its_plan():
+    profile = qa.CycloidPolynomial(2)
+    sent = qa.motion_of(SIXTH, profile, [0.1, -0.05], step=2e-3, after=0.1)
+    assert len(sent.time) == 451
+    plan = qa.evaluate_coefficients(SIXTH, [0.1, -0.05], profile=profile)
+    of_plan = plan.candidate.sample(sent.time[1:400]).joint
+    np.testing.assert_allclose(sent.angle[1:400], of_plan[:, 0], atol=1e-9)
+    np.testing.assert_allclose(sent.acceleration[1:400], of_plan[:, 2], atol=1e-6)
+    assert sent.angle[-1] == pytest.approx(SIXTH.target)
+    assert sent.speed[-1] == 0.0
+
+
+def test_a_surrogate_finds_with_few_candidates_what_others_do_not():
+    pytest.importorskip("sklearn")
+    found = {
+        method: qa.search(limited, **BOX, constraints=["wall"], evaluations=40, algorithm=method)
+        for method in ("gp", "nsga2")
+    }
+    again = qa.search(limited, **BOX, constraints=["wall"], evaluations=40, algorithm="gp")
+    assert again == found["gp"]
+    comparison = compare_fronts(list(found.values()), fill=False)
+    surrogate, population = (run.scores["hypervolume"] for run in comparison.runs)
+    assert surrogate > population
+
+
+def test_functions_equal_each_other_by_what_they_state():
+    front = qa.search(parabolas, **BOX, evaluations=40, population=10)
+    other = dataclasses.replace(front.function, name="other")
+    assert other != front.function

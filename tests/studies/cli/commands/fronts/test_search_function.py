@@ -1,0 +1,88 @@
+"""`quietarm search --function FILE.py:NAME`, and what other commands make of its fronts."""
+
+import pytest
+
+import quietarm as qa
+
+SIMULATOR = """
+import numpy as np
+
+def parabolas(x):
+    return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2]
+
+def boxed(x):
+    return parabolas(x)
+boxed.lower, boxed.upper, boxed.objectives, boxed.units = [-5, -5], 5, ("way", "work"), ("mm", "J")
+
+def nan(x):
+    return [np.nan, 1.0]
+nan.lower, nan.upper = [-1, -1], 1
+
+def three(x):
+    return [1.0, 2.0, 3.0]
+three.lower, three.upper = [-1, -1], 1
+
+number = 3
+"""
+
+
+@pytest.fixture
+def simulator(folder):
+    (folder / "simulator.py").write_text(SIMULATOR)
+
+
+@pytest.mark.usefixtures("simulator")
+def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder):
+    line = "search --function simulator.py:boxed --evaluations 60 --method es"
+    code, out, err = call(f"{line} --output a.json --output a.csv --output a.png")
+    assert code == 0, err
+    assert "least way" in out
+    assert "values are those that the function boxed gave" in out
+    front = qa.Front.load(folder / "a.json")
+    assert front.record.evaluations == 60
+    assert (folder / "a.csv").read_text().startswith("way_mm,work_J,a_1,a_2\n")
+    assert call(f"{line} --seed 1 --from a.json")[0] == 2  # it begins where its seed says
+    bounds = "--lower=-5,-5 --upper 5"
+    asked = "search --function simulator.py:parabolas --method nsga2 --evaluations 60"
+    code, _, err = call(f"{asked} {bounds} --from a.json --output b.json")
+    assert code == 0, err
+    code, out, err = call(f"{line} --seed 1 --output c.json")
+    assert code == 0, err
+    code, out, err = call("compare a.json c.json")
+    assert code == 0, err
+    assert "hypervolume" in out
+
+
+@pytest.mark.usefixtures("simulator")
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("--function simulator.py", "give the file and the name"),
+        ("--function other.py:f", "other.py is no file"),
+        ("--function simulator.py:parabola", "did you mean 'parabolas'?"),
+        ("--function simulator.py:number", "give the name of a function"),
+        ("--function simulator.py:parabolas --evaluations 9", "lower is missing"),
+        ("--function simulator.py:boxed", "evaluations is missing"),
+        ("--quiet --function simulator.py:nan --evaluations 40", "no finite numbers"),
+        ("--function simulator.py:three --evaluations 40", "shape (3,), not (2,)"),
+        ("single-link --function simulator.py:boxed", "PLANT is for a move"),
+        ("--function simulator.py:boxed --bound 1", "--bound is for a move"),
+        ("--function simulator.py:boxed --evaluations 9 -o a.html", "a.html is for a front"),
+        ("single-link --target 1 --duration 1 --bound 1 --lower 1", "--lower is for --function"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(refused, line, words):
+    assert words in refused(f"search {line}")
+
+
+@pytest.mark.usefixtures("simulator")
+def test_commands_that_need_a_move_say_so(refused, call):
+    line = "search --function simulator.py:boxed --evaluations 30 --method es --output a.json"
+    assert call(line)[0] == 0
+    for command in ("front --polish a.json", "explore a.json --no-browser", "bench a.json"):
+        assert "has no plant and no task" in refused(command)
+
+
+def test_a_file_that_fails_is_named_with_its_line(refused, folder):
+    (folder / "bad.py").write_text("x = 1\ny = x / 0\n")
+    assert "bad.py, line 2 fails: ZeroDivisionError" in refused("search --function bad.py:f")

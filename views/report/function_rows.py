@@ -1,0 +1,58 @@
+"""Fronts of a user's own function in lines: how each was found, and its ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from quietarm.metaheuristics.spread import hypervolumes
+from quietarm.ocp import Front
+from quietarm.ocp.front.function_front import FunctionFront
+from quietarm.ocp.front.points import has_knee
+from quietarm.views.report.words import counted, spread_words
+
+
+def function_lines(fronts: Sequence[Front]) -> list[str]:
+    """Fronts of one function, and the spread over several seeds."""
+    lines = list[str]()
+    for front in fronts:
+        record = front.record
+        seed = "" if record.seed is None else f", seed {record.seed}"
+        broken = f", {front.infeasible} violate a constraint" if front.infeasible else ""
+        lines += [
+            f"{record.method}{seed}: {counted(len(front.points), 'point')}, "
+            f"{counted(record.evaluations, 'candidate')} in {record.seconds:.1f} s, "
+            f"{front.failed} failed{broken}",
+            *_chosen_points(front),
+        ]
+    lines.append(f"values are those that the function {fronts[0].task.name} gave")
+    if len(fronts) > 1 and len({front.reference for front in fronts}) == 1:
+        lines.append(
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to its "
+            "reference, median (quartiles)"
+        )
+    return lines
+
+
+def _chosen_points(front: Front) -> list[str]:
+    """The least of each objective, and the knee, a line each."""
+    if not isinstance(front, FunctionFront) or not front.points:
+        return []
+    table = front.objective_values
+    rows = {f"least {entry.label}": int(table[:, k].argmin())
+            for k, entry in enumerate(front.outputs)}  # fmt: skip
+    if has_knee(table):
+        rows["knee"] = front.points.index(front.knee())  # pyright: ignore[reportArgumentType]
+    width = max(15, *(len(name) + 1 for name in rows))
+    return [
+        f"  {name:{width}}{values_of_function(front, table[row].tolist())}"
+        for name, row in rows.items()
+    ]
+
+
+def values_of_function(front: FunctionFront, values: Sequence[float]) -> str:
+    """Objectives with their names and units: residual 0.001 m, energy 0.05 J."""
+    words = [
+        f"{entry.label} {value:.4g} {entry.unit}".rstrip()
+        for entry, value in zip(front.outputs, values)
+    ]
+    return ", ".join(words)
