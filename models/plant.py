@@ -448,6 +448,14 @@ class Plant(_Driven, ABC):
         return {name: value for name, value in self.parameters.items() if units[name] != COUNT}
 
     @property
+    def as_checked(self) -> Plant:
+        """The plant whose equations are checked for this one: itself.
+
+        One that quietarm makes for many values of its parameters names another, checked once.
+        """
+        return self
+
+    @property
     @final
     def tips(self) -> int:
         """Number of tip displacements of the plant."""

@@ -55,6 +55,7 @@ _EITHER = {"torque": "torques", "tip_displacements": "tips_at"}
 
 def check_contract(plant: Plant) -> None:
     """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
+    plant = plant.as_checked
     kind = type(plant)
     modes = getattr(plant, "modes", None)
     bare = any(isinstance(entry, Field) for entry in vars(kind).values())
@@ -74,7 +75,7 @@ def check_contract(plant: Plant) -> None:
 @lru_cache(maxsize=256)
 def check_passive(plant: Plant) -> None:
     """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
-    at_rest.refuse_active_rest(plant.name, *_slopes_at_rest(plant))
+    at_rest.refuse_active_rest(plant.name, *_slopes_at_rest(plant.as_checked))
 
 
 def check_drive(plant: Plant) -> None:
@@ -310,6 +311,7 @@ Rate = tuple[str, Expression, Expression]
 """A method of a plant, a value, and the rate of it that the method gives."""
 
 
+@lru_cache(maxsize=256)
 def _check_rates(plant: Plant) -> None:
     """Rates of the joints, and of the tips, are the time derivatives of angles and displacements.
 

@@ -71,8 +71,12 @@ class Tables:
 
     def at(self, place: Expression) -> Place:
         """The basis at a place."""
-        terms = max(len(table[0]) for table in (self.tips, *self.path, *self.modes.values()))
-        return Place(self.knots, place, terms)
+        return Place(self.knots, place, self.terms)
+
+    @property
+    def terms(self) -> int:
+        """Number of Chebyshev polynomials of a piece."""
+        return max(len(table[0]) for table in (self.tips, *self.path, *self.modes.values()))
 
     @property
     def least_inertia(self) -> float:
