@@ -191,7 +191,7 @@ _LEAST_OF_TIP = 1e-6
 
 
 class _Forces:
-    """What drives and holds a robot along a path, as functions that are linear in the masses."""
+    """Forces along a path, as functions that are linear in the masses."""
 
     def __init__(self, dynamics: Dynamics, shapes: Array) -> None:
         self._dynamics = dynamics
