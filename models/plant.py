@@ -185,6 +185,8 @@ class Plant(_Driven, ABC):
     """Whether its `structure` is seen from the side, in space; else from above."""
     along_path: ClassVar[bool] = False
     """Whether the joint's angle is a place on a path from 0 to 1 although there is one joint."""
+    is_kept: ClassVar[bool] = False
+    """Whether functions of it are left to the next process; see `kept_functions`."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}

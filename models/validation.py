@@ -26,6 +26,7 @@ from quietarm.models.compiled import Compiled
 from quietarm.models.dimensions import INERTIA
 from quietarm.models.drive import Drive
 from quietarm.models.joint_motion import Array, Expression, JointMotion
+from quietarm.models.kept_functions import kept_function
 from quietarm.models.number_checks import quoted, words_of_error
 
 if TYPE_CHECKING:
@@ -191,6 +192,12 @@ def _evaluate(plant: Plant, motions: Array) -> Iterator[Array]:
 @lru_cache(maxsize=256)
 def _equations(plant: Plant) -> ca.Function:
     """(joint motion, W and W' in a column) -> every output, the slopes of all by each."""
+    if not plant.is_kept:
+        return _build_equations(plant)
+    return kept_function(("equations", plant), lambda: _build_equations(plant))
+
+
+def _build_equations(plant: Plant) -> ca.Function:
     size = 3 + 2 * plant.modes
     outputs_of(plant, [ca.MX.sym("x") for _ in range(size)])  # math.cos makes a nan of an SX
     x = ca.SX.sym("x", size)

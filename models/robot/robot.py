@@ -280,6 +280,7 @@ class RobotOnPath(Plant):
     path_range: ClassVar[tuple[float, float] | None] = range_of_tables()
     in_space: ClassVar[bool] = True
     along_path: ClassVar[bool] = True
+    is_kept: ClassVar[bool] = True
 
     robot: Robot = content("what moves")  # noqa: RUF009
     path: GeometricPath = content("where its joints go")  # noqa: RUF009

@@ -192,12 +192,15 @@ class Dynamics:
 
     @cached_property
     def _at_rest(self) -> Compiled:
+        return Compiled(self._build_at_rest, kept_as=("at_rest", self.mechanism))
+
+    def _build_at_rest(self) -> ca.Function:
         x = ca.SX.sym("x", self.size)
         still = ca.SX(self.size, 1)
         torque = self._torques(x, still, still)
         slopes = ca.densify(ca.jacobian(torque, x)[:, self.driven :])
         outputs = [ca.densify(torque), slopes]
-        return Compiled(lambda: ca.Function("at_rest", [x], outputs, {"cse": True}))
+        return ca.Function("at_rest", [x], outputs, {"cse": True})
 
     def masses(self, x: ArrayLike) -> Array:
         """The mass matrix of all joints."""
@@ -209,11 +212,14 @@ class Dynamics:
 
     @cached_property
     def _masses(self) -> Compiled:
+        return Compiled(self._build_masses, kept_as=("masses", self.mechanism))
+
+    def _build_masses(self) -> ca.Function:
         x = ca.SX.sym("x", self.size)
         a = ca.SX.sym("a", self.size)
         torque = self._torques(x, ca.SX(self.size, 1), a)
         masses = ca.densify(ca.jacobian(torque, a))
-        return Compiled(lambda: ca.Function("masses", [x], [masses], {"cse": True}))
+        return ca.Function("masses", [x], [masses], {"cse": True})
 
     def sag(self, q: Array, begin: Array | None = None) -> Array:
         """Angles of the springs at rest, by Newton from where they may be.

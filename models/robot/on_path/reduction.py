@@ -205,6 +205,15 @@ class _Forces:
     @cached_property
     def _coefficients(self) -> Compiled:
         """(positions, their first and second slopes) -> `OF_TORQUES`, of all joints."""
+        parts = ("coefficients", self._dynamics.mechanism, self._shapes)
+        return Compiled(self._build_coefficients, kept_as=parts)
+
+    @cached_property
+    def second(self) -> Compiled:
+        """(x, its first slope, its second) -> the same of the springs' torques at rest."""
+        return Compiled(self._build_second, kept_as=("second", self._dynamics.mechanism))
+
+    def _build_coefficients(self) -> ca.Function:
         dynamics = self._dynamics
         size = dynamics.size
         x, slope, bend = (ca.SX.sym(name, size) for name in ("x", "slope", "bend"))
@@ -240,11 +249,9 @@ class _Forces:
         ]
         dense = [ca.densify(output) for output in outputs]
         inputs = [x, slope, bend]
-        return Compiled(lambda: ca.Function("coefficients", inputs, dense, {"cse": True}))
+        return ca.Function("coefficients", inputs, dense, {"cse": True})
 
-    @cached_property
-    def second(self) -> Compiled:
-        """(x, its first slope, its second) -> the same of the springs' torques at rest."""
+    def _build_second(self) -> ca.Function:
         dynamics = self._dynamics
         x, slope, bend = (ca.SX.sym(name, dynamics.size) for name in ("x", "slope", "bend"))
         still = ca.SX(dynamics.size, 1)
@@ -253,4 +260,4 @@ class _Forces:
         second = ca.jtimes(first, x, slope) + ca.jtimes(torque, x, bend)
         dense = [ca.densify(first), ca.densify(second)]
         inputs = [x, slope, bend]
-        return Compiled(lambda: ca.Function("second", inputs, dense, {"cse": True}))
+        return ca.Function("second", inputs, dense, {"cse": True})
