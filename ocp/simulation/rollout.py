@@ -101,7 +101,7 @@ class Simulation(NamedTuple):
         return mesh_of(self.profile, self.steps, self.breaks)
 
     def kept_as(self, what: str) -> tuple[str, Simulation] | None:
-        """All that a function of it follows from, if such are left to the next process."""
+        """Return what a function of it follows from, if such are left to the next process."""
         return (what, self) if self.plant.is_kept else None
 
     def rollout(

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 import pytest
-
 from small_robots import ARM, ARM_FILE, write_robot
 
 from quietarm.models import kept_functions

@@ -185,7 +185,7 @@ def tables_of(robot: MovingRobot, path: GeometricPath) -> Tables:
 
 
 def _arrays_of(tables: Tables) -> dict[str, Array]:
-    """All that tables are made of, by names as `modes K`."""
+    """Arrays that tables are made of, by names as `modes K`."""
     return {
         "knots": tables.knots,
         "tips": tables.tips,
