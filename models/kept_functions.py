@@ -12,7 +12,8 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import hmac
-import io
+import json
+import math
 import os
 import platform
 import secrets
@@ -81,13 +82,29 @@ def kept_arrays(
         return build()
     content = folder.read(name)
     if content is not None:
-        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            return {entry: arrays[entry] for entry in arrays.files}
+        return _unpacked(content)
     built = build()
-    buffer = io.BytesIO()
-    np.savez(buffer, allow_pickle=False, **built)
-    folder.write(name, buffer.getvalue())
+    folder.write(name, _packed(built))
     return built
+
+
+def _packed(arrays: Mapping[str, Array]) -> bytes:
+    """Return a line that says what arrays there are, and their numbers one after another."""
+    head = [[name, array.dtype.str, array.shape] for name, array in arrays.items()]
+    numbers = (np.ascontiguousarray(array).tobytes() for array in arrays.values())
+    return b"".join([json.dumps(head).encode(), b"\n", *numbers])
+
+
+def _unpacked(content: bytes) -> dict[str, Array]:
+    arrays = dict[str, Array]()
+    head, _, _ = content.partition(b"\n")
+    begin = len(head) + 1
+    for name, kind, shape in json.loads(head):
+        count = math.prod(shape)
+        array = np.frombuffer(content, kind, count, begin)
+        arrays[name] = array.reshape(shape).copy()
+        begin += array.nbytes
+    return arrays
 
 
 class Folder:
