@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import os
 import sys
@@ -152,6 +151,8 @@ def scheduler_address(text: str) -> str:
 
 def _threads_of(scheduler: str) -> int:
     """Return how many threads a scheduler's workers have; any error if it does not answer."""
+    import asyncio  # not needed by commands that plan, whose start it would delay
+
     from distributed.core import rpc
     from distributed.security import Security
 

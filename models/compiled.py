@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext, redirect_stderr
+from functools import partial
 from threading import RLock, get_ident
 from typing import Any, TextIO, TypeVar
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import calls_casadi, interruptible
+from quietarm.models.kept_functions import kept_function
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -40,12 +42,18 @@ class Compiled:
         Whether what a call writes to standard error is dropped.
     side_by_side : bool
         Whether several threads may call it at once: each call then has memory of its own.
+    kept_as : sequence, optional
+        All that the function follows from, if it is to be left to the next process.
     """
 
     def __init__(
-        self, build: Callable[[], ca.Function], silent: bool = False, side_by_side: bool = False
+        self,
+        build: Callable[[], ca.Function],
+        silent: bool = False,
+        side_by_side: bool = False,
+        kept_as: Sequence[Any] | None = None,
     ) -> None:
-        self._build = build
+        self._build = build if kept_as is None else partial(kept_function, kept_as, build)
         self._function: ca.Function | None = None
         self._silent = silent
         self._turn = nullcontext() if side_by_side else _TURN

@@ -185,6 +185,8 @@ class Plant(_Driven, ABC):
     """Whether its `structure` is seen from the side, in space; else from above."""
     along_path: ClassVar[bool] = False
     """Whether the joint's angle is a place on a path from 0 to 1 although there is one joint."""
+    is_kept: ClassVar[bool] = False
+    """Whether functions of it are left to the next process; see `kept_functions`."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # of every subclass
     _known: ClassVar[dict[str, type[Plant]]] = {}
@@ -446,6 +448,14 @@ class Plant(_Driven, ABC):
         """The parameters that may have relative errors: all but counts."""
         units = self.units()
         return {name: value for name, value in self.parameters.items() if units[name] != COUNT}
+
+    @property
+    def as_checked(self) -> Plant:
+        """The plant whose equations are checked for this one: itself.
+
+        One that quietarm makes for many values of its parameters names another, checked once.
+        """
+        return self
 
     @property
     @final

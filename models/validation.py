@@ -26,6 +26,7 @@ from quietarm.models.compiled import Compiled
 from quietarm.models.dimensions import INERTIA
 from quietarm.models.drive import Drive
 from quietarm.models.joint_motion import Array, Expression, JointMotion
+from quietarm.models.kept_functions import kept_function
 from quietarm.models.number_checks import quoted, words_of_error
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ _EITHER = {"torque": "torques", "tip_displacements": "tips_at"}
 
 def check_contract(plant: Plant) -> None:
     """Refuse a plant that breaks the contract of `Plant`; ValueError with what is wrong."""
+    plant = plant.as_checked
     kind = type(plant)
     modes = getattr(plant, "modes", None)
     bare = any(isinstance(entry, Field) for entry in vars(kind).values())
@@ -74,7 +76,7 @@ def check_contract(plant: Plant) -> None:
 @lru_cache(maxsize=256)
 def check_passive(plant: Plant) -> None:
     """Refuse a plant whose joint has no positive inertia, or yields work from rest."""
-    at_rest.refuse_active_rest(plant.name, *_slopes_at_rest(plant))
+    at_rest.refuse_active_rest(plant.name, *_slopes_at_rest(plant.as_checked))
 
 
 def check_drive(plant: Plant) -> None:
@@ -190,6 +192,12 @@ def _evaluate(plant: Plant, motions: Array) -> Iterator[Array]:
 @lru_cache(maxsize=256)
 def _equations(plant: Plant) -> ca.Function:
     """(joint motion, W and W' in a column) -> every output, the slopes of all by each."""
+    if not plant.is_kept:
+        return _build_equations(plant)
+    return kept_function(("equations", plant), lambda: _build_equations(plant))
+
+
+def _build_equations(plant: Plant) -> ca.Function:
     size = 3 + 2 * plant.modes
     outputs_of(plant, [ca.MX.sym("x") for _ in range(size)])  # math.cos makes a nan of an SX
     x = ca.SX.sym("x", size)
@@ -310,6 +318,7 @@ Rate = tuple[str, Expression, Expression]
 """A method of a plant, a value, and the rate of it that the method gives."""
 
 
+@lru_cache(maxsize=256)
 def _check_rates(plant: Plant) -> None:
     """Rates of the joints, and of the tips, are the time derivatives of angles and displacements.
 

@@ -213,12 +213,15 @@ def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
 
 @lru_cache(maxsize=256, typed=True)  # a robust plan asks again for every error that it adds
 def _check_range(plant: Plant, name: str, size: float) -> None:
+    shared = True
     for error in (-size, size):
         try:
-            check_contract(perturb_plant(plant, {name: error}))
+            perturbed = perturb_plant(plant, {name: error})
+            check_contract(perturbed)
         except ValueError as problem:
             raise ValueError(f"with an error of {100 * error:g} % of {name}, {problem}") from None
-    if name not in _OF_MODES:
+        shared = shared and perturbed.as_checked is not perturbed
+    if name not in _OF_MODES and not shared:
         _check_symbols(plant, name, getattr(plant, name) * (1 + size))
 
 

@@ -12,6 +12,8 @@ from hypothesis import Phase, settings
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Numba compiles pymoo's AGE-MOEA anew in every process, which takes longer than its small searches.
 os.environ.setdefault("NUMBA_OPT", "0")
+# Tests are of what is computed here, not of what another version of the sources left.
+os.environ["QUIETARM_CACHE"] = "off"
 
 from pages import blocks
 

@@ -38,6 +38,7 @@ from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.mujoco_model import entries_of_mujoco
 from quietarm.models.robot.on_path.directions import lines_in
 from quietarm.models.robot.on_path.full import FullRobot
+from quietarm.models.robot.on_path.here import Here, Latest
 from quietarm.models.robot.on_path.path_tables import (
     FARTHEST,
     PAYLOAD,
@@ -53,7 +54,6 @@ from quietarm.models.robot.on_path.path_tables import (
 from quietarm.models.robot.on_path.stick_figure import stick_figure_of
 from quietarm.models.robot.on_path.tip_way import way_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
-from quietarm.models.robot.path.piecewise import Place
 from quietarm.models.robot.path.straight_line import tip_beside_lines
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.robot_notes import notes_of
@@ -295,7 +295,7 @@ class Robot(CheckedRobot):
         return f" (with {' and '.join(names)}, following it)" if names else ""
 
 
-_OF_ALL_PARTS = ("unscaled", "mechanism", "dynamics", "digest")
+_OF_ALL_PARTS = ("unscaled", "mechanism", "dynamics", "of_one_kilogram", "digest")
 """What a robot has computed from its beam as well."""
 
 
@@ -322,6 +322,7 @@ class RobotOnPath(Plant):
     path_range: ClassVar[tuple[float, float] | None] = range_of_tables()
     in_space: ClassVar[bool] = True
     along_path: ClassVar[bool] = True
+    is_kept: ClassVar[bool] = True
 
     robot: Robot = content("what moves")  # noqa: RUF009
     path: GeometricPath = content("where its joints go")  # noqa: RUF009
@@ -332,7 +333,7 @@ class RobotOnPath(Plant):
         super().__post_init__()
         self._check_multiples()
         object.__setattr__(self, "path", self.robot.fitted(self.path))
-        _ = self.tables
+        _ = groups_at(self.robot, self.path, tuple(self._errors.items()))
         self._check_rotors()
 
     @property
@@ -412,6 +413,11 @@ class RobotOnPath(Plant):
         }
 
     @property
+    def as_checked(self) -> RobotOnPath:
+        """The robot with its own stiffness and payload, whose tables all others are made of."""
+        return RobotOnPath(self.robot, self.path) if self._errors else self
+
+    @property
     def tables(self) -> Tables:
         """The coefficients of its equations, with the robot's own stiffness and payload."""
         return tables_of(self.robot, self.path)
@@ -465,7 +471,7 @@ class RobotOnPath(Plant):
     def joints(self, path: JointMotion) -> Sequence[JointMotion]:
         """Motion of every driven joint [rad or m]."""
         positions = np.moveaxis(np.array(self.tables.path), 0, -1)
-        by_joint = self.tables.at(path.angle).values(positions)
+        by_joint = self._at(path.angle).basis(self.tables.terms).values(positions)
         square = path.speed * path.speed
         nothing = 0 * path.angle
         motions = list[JointMotion]()
@@ -542,14 +548,28 @@ class RobotOnPath(Plant):
 
     def _coefficients(self, path: JointMotion, group: str) -> dict[str, Array]:
         """All of a group at the place on the path, by one product for each."""
+        return self._at(path.angle).once(group, self._coefficients_at)
+
+    def _at(self, angle: Expression) -> Here:
+        """The place on the path, with what was computed there: the latest one is remembered.
+
+        Who wants a step or a sample asks several times at the same one. Coefficients of symbols
+        are so built once, and stand once in a function.
+        """
+        parts = (self.robot, self.path, self.stiffness, self.payload, angle)
+        here = _LATEST.here
+        if here is None or not here.is_of(parts):
+            here = _LATEST.here = Here(parts, self.tables.knots)
+        return here
+
+    def _coefficients_at(self, here: Here, group: str) -> dict[str, Array]:
         errors = self._errors
         if all(isinstance(error, Real) for error in errors.values()):
             numbers = {name: float(error) for name, error in errors.items()}
             tables = groups_at(self.robot, self.path, tuple(numbers.items()))[group]
-            terms = max(table.shape[1] for table in tables.values())
-            place = Place(self.tables.knots, path.angle, terms)
+            place = here.basis(max(table.shape[1] for table in tables.values()))
             return {name: place.values(table) for name, table in tables.items()}
-        place = self.tables.at(path.angle)
+        place = here.basis(self.tables.terms)
         nominal = self.tables.groups[group]
         variations = variations_of(self.robot, self.path, tuple(errors))
         changes = [groups[group] for groups in variations.values()]
@@ -596,6 +616,9 @@ class RobotOnPath(Plant):
                 "the robot has no mass at the end of a beam, so payload is 1; give the beam a "
                 "tip_mass"
             )
+
+
+_LATEST = Latest()
 
 
 def _sum(products: Sequence[tuple[Expression, Expression]]) -> Expression:

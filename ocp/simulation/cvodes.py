@@ -111,17 +111,12 @@ def _figures(
     decades: int,
 ) -> Compiled:
     """(arguments, errors, state before) -> outputs at nodes and ends, arrival, energy, net work."""
-    build = partial(
-        _build_figures,
-        plant,
-        law,
-        shape,
-        steps,
-        names,
-        definition,
-        decades,
+    parts = (plant, law, shape, steps, names, definition, decades)
+    return Compiled(
+        partial(_build_figures, *parts),
+        silent=True,  # the error of `_refusing` is enough
+        kept_as=("figures", *parts) if plant.is_kept else None,
     )
-    return Compiled(build, silent=True)  # the error of `_refusing` is enough
 
 
 def _build_figures(

@@ -349,7 +349,9 @@ def simulate(
 @lru_cache(maxsize=RECENT)
 def _compiled_values(simulation: Simulation) -> RowFunction:
     largest = 100 if simulation.plant.steps_at_once == 1 else 32  # see `Batch`
-    return RowFunction(partial(_build_values, simulation), sizes=(1, 8, largest))
+    return RowFunction(
+        partial(_build_values, simulation), (1, 8, largest), simulation.kept_as("values")
+    )
 
 
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:

@@ -7,7 +7,9 @@ the equations themselves, and neither modes nor tables are used.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import lru_cache, partial
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -18,7 +20,7 @@ from quietarm.models.compiled import Compiled
 from quietarm.models.plant import SprungEquations
 from quietarm.ocp.energy import Energy
 from quietarm.ocp.errors import SolverFailedError
-from quietarm.ocp.profiles.free_motion import PiecewiseMotion
+from quietarm.ocp.profiles.free_motion import Law, PiecewiseMotion
 from quietarm.ocp.sample import Sample
 from quietarm.ocp.simulation.collocation import NODES
 from quietarm.ocp.simulation.mesh import Mesh
@@ -79,14 +81,8 @@ def follow_in_full(
     rest = equations.at_rest(target)
     state = np.concatenate([equations.at_rest(start), np.zeros(equations.springs)])
     numbers = motion.arguments.shape[0]
-    given = ca.SX.sym("given", numbers)
-    fraction = ca.SX.sym("fraction")
-    law = motion.law(ca.vertsplit(given), fraction, jerk=False)
-    along = _followed(equations, law, given, fraction, given[-1], mesh.samples)
-    count = len(mesh.samples)
-    outputs = Compiled(
-        lambda: _torques_and_speeds(equations, law, given, fraction, count), silent=True
-    )
+    along = _along(equations, motion.law, numbers, steps)
+    outputs = _torques_and_speeds(equations, motion.law, numbers, steps)
     work = 0.0
     peaks = list[Array]()
     try:
@@ -101,17 +97,66 @@ def follow_in_full(
             ]
             lengths = ca.DM(column[-1] * mesh.lengths).T
             work += float(ca.sum1(spent(energy, nodes, lengths)))
-        there = ca.SX.sym("there", np.size(target))
-        still = JointMotion(there, 0.0, 0.0)
-        after = _followed(equations, still, there, fraction, ca.SX(window[-1]), window / window[-1])
+        after = _afterwards(equations, np.size(target), tuple(window.tolist()))
         (later,) = after(state, np.atleast_1d(target))
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion.remedy}") from error
     angles = np.column_stack([rest, later[: equations.springs]])
-    tips = Compiled(lambda: _tips(equations, np.size(target), angles.shape[1]), silent=True)
+    tips = _tips(equations, np.size(target), angles.shape[1])
     places = tips(np.atleast_1d(target), angles)[0].T
     away = np.linalg.norm(places[1:] - places[0], axis=1)
     return FullFigures(work, float(away.max()), np.max(peaks, axis=0), state)
+
+
+_of_robot = lru_cache(maxsize=4)
+"""Of a function that is built for a robot on its path, and a few more are remembered."""
+
+
+def _compiled(build: Callable[..., ca.Function], *parts: Any) -> Compiled:
+    """Return the function that is built of its parts, all that it follows from."""
+    name = build.__name__
+    return Compiled(partial(build, *parts), silent=True, kept_as=(name, *parts))
+
+
+@_of_robot
+def _along(equations: SprungEquations, law: Law, numbers: int, steps: int) -> Compiled:
+    """(state, arguments of the law) -> states at the samples of a piece, a column each."""
+    return _compiled(_build_along, equations, law, numbers, steps)
+
+
+@_of_robot
+def _torques_and_speeds(equations: SprungEquations, law: Law, numbers: int, steps: int) -> Compiled:
+    """(states, arguments, fractions) -> torques and speeds of the joints, a column a sample."""
+    return _compiled(_build_torques_and_speeds, equations, law, numbers, steps)
+
+
+@_of_robot
+def _afterwards(equations: SprungEquations, size: int, window: tuple[float, ...]) -> Compiled:
+    """(state, place) -> states at times after arrival, with the joints at rest."""
+    return _compiled(_build_afterwards, equations, size, window)
+
+
+@_of_robot
+def _tips(equations: SprungEquations, size: int, states: int) -> Compiled:
+    """(place, angles of the springs) -> the tip, a column a state, with the joints at rest."""
+    return _compiled(_build_tips, equations, size, states)
+
+
+def _build_along(equations: SprungEquations, law: Law, numbers: int, steps: int) -> ca.Function:
+    given = ca.SX.sym("given", numbers)
+    fraction = ca.SX.sym("fraction")
+    motion = law(ca.vertsplit(given), fraction, jerk=False)
+    return _followed(equations, motion, given, fraction, given[-1], Mesh(steps).samples)
+
+
+def _build_afterwards(
+    equations: SprungEquations, size: int, window: tuple[float, ...]
+) -> ca.Function:
+    place = ca.SX.sym("there", size)
+    fraction = ca.SX.sym("fraction")
+    still = JointMotion(place, 0.0, 0.0)
+    fractions = np.array(window) / window[-1]
+    return _followed(equations, still, place, fraction, ca.SX(window[-1]), fractions)
 
 
 def _followed(
@@ -121,29 +166,25 @@ def _followed(
     fraction: ca.SX,
     duration: ca.SX,
     fractions: Array,
-) -> Compiled:
+) -> ca.Function:
     """(state, given) -> states at these fractions of a motion, a column each."""
-
-    def build() -> ca.Function:
-        count = equations.springs
-        state = ca.SX.sym("state", 2 * count)
-        angles = state[:count]
-        rates = state[count:]
-        accelerations = equations.accelerations(path, angles, rates)
-        problem = {
-            "t": fraction,
-            "x": state,
-            "p": given,
-            "ode": duration * ca.vertcat(rates, accelerations),
-        }
-        times = fractions[1:].tolist()
-        run = ca.integrator("full", "cvodes", problem, 0.0, times, CVODES)
-        before = ca.MX.sym("before", 2 * count)
-        parameters = ca.MX.sym("given", given.numel())
-        states = ca.horzcat(before, run(x0=before, p=parameters)["xf"])
-        return ca.Function("states", [before, parameters], [states])
-
-    return Compiled(build, silent=True)
+    count = equations.springs
+    state = ca.SX.sym("state", 2 * count)
+    angles = state[:count]
+    rates = state[count:]
+    accelerations = equations.accelerations(path, angles, rates)
+    problem = {
+        "t": fraction,
+        "x": state,
+        "p": given,
+        "ode": duration * ca.vertcat(rates, accelerations),
+    }
+    times = fractions[1:].tolist()
+    run = ca.integrator("full", "cvodes", problem, 0.0, times, CVODES)
+    before = ca.MX.sym("before", 2 * count)
+    parameters = ca.MX.sym("given", given.numel())
+    states = ca.horzcat(before, run(x0=before, p=parameters)["xf"])
+    return ca.Function("states", [before, parameters], [states])
 
 
 CVODES = {
@@ -155,17 +196,19 @@ CVODES = {
 """Options: energies are then within 1e-7 of those by tolerances of a hundredth."""
 
 
-def _torques_and_speeds(
-    equations: SprungEquations, path: JointMotion, given: ca.SX, fraction: ca.SX, samples: int
+def _build_torques_and_speeds(
+    equations: SprungEquations, law: Law, numbers: int, steps: int
 ) -> ca.Function:
-    """(states, given, fractions) -> torques and speeds of the joints, a column a sample."""
+    given = ca.SX.sym("given", numbers)
+    fraction = ca.SX.sym("fraction")
+    path = law(ca.vertsplit(given), fraction, jerk=False)
     springs = equations.springs
     state = ca.SX.sym("state", 2 * springs)
     torques = equations.torques(path, state[:springs], state[springs:])
     speeds = ca.vertcat(*(joint.speed for joint in equations.joints(path)))
     outputs = [ca.densify(ca.vertcat(torques, speeds))]
     once = ca.Function("output", [state, given, fraction], outputs, {"cse": True})
-    return once.map("outputs", "serial", samples, [1], [])
+    return once.map("outputs", "serial", len(Mesh(steps).samples), [1], [])
 
 
 def _sample(torques: Array, speeds: Array) -> Sample:
@@ -183,8 +226,7 @@ def _sample(torques: Array, speeds: Array) -> Sample:
     )
 
 
-def _tips(equations: SprungEquations, size: int, states: int) -> ca.Function:
-    """(place, angles of the springs) -> the tip, a column a state, with the joints at rest."""
+def _build_tips(equations: SprungEquations, size: int, states: int) -> ca.Function:
     place = ca.SX.sym("place", size)
     angles = ca.SX.sym("angles", equations.springs)
     origin = equations.tip(JointMotion(place, 0.0, 0.0), angles)

@@ -104,6 +104,10 @@ class Simulation(NamedTuple):
         """The mesh: where the steps begin and end."""
         return mesh_of(self.profile, self.steps, self.breaks)
 
+    def kept_as(self, what: str) -> tuple[str, Simulation] | None:
+        """Return what a function of it follows from, if such are left to the next process."""
+        return (what, self) if self.plant.is_kept else None
+
     def rollout(
         self,
         coefficients: Expression | Sequence[Expression],

@@ -29,10 +29,18 @@ class RowFunction:
         Builds the function for so many rows.
     sizes : tuple of int
         Rows of a compiled call, increasing: to build one takes as long as hundreds of its calls.
+    kept_as : sequence, optional
+        All that the function follows from beside the number of rows, as of `Compiled`.
     """
 
-    def __init__(self, build: Callable[[int], ca.Function], sizes: tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        build: Callable[[int], ca.Function],
+        sizes: tuple[int, ...],
+        kept_as: Sequence[Any] | None = None,
+    ) -> None:
         self._build = build
+        self._kept_as = kept_as
         self._sizes = sizes
         self._compiled: dict[int, Compiled] = {}
         self._padded_calls = 0
@@ -66,7 +74,8 @@ class RowFunction:
             self._padded_calls += 1
             return min(larger)
         # it does not refer to this object, which then goes, with its memory, when it is forgotten
-        compiled = Compiled(partial(self._build, size), side_by_side=True)
+        kept_as = None if self._kept_as is None else (*self._kept_as, size)
+        compiled = Compiled(partial(self._build, size), side_by_side=True, kept_as=kept_as)
         with COST.timed("builds"):
             _ = compiled.function
         self._compiled[size] = compiled

@@ -93,8 +93,10 @@ class Batch:
         build = partial(compile_derivatives, simulation)
         # equations of many terms take as long a row in larger blocks, and longer to build
         sizes = (1, 4, 8) if simulation.plant.steps_at_once == 1 else (1, 4)
-        self._derivatives = RowFunction(build, sizes)
-        self._arrivals = RowFunction(partial(compile_arrivals, simulation), sizes)
+        self._derivatives = RowFunction(build, sizes, simulation.kept_as("derivatives"))
+        self._arrivals = RowFunction(
+            partial(compile_arrivals, simulation), sizes, simulation.kept_as("arrivals")
+        )
 
     @cached_property
     def _steps(self) -> int:

@@ -103,10 +103,15 @@ def _clean(entries: Array) -> Array:
 
 
 class Dynamics:
-    """Functions of a mechanism: of the driven joints' positions q and the springs' angles p."""
+    """Functions of a mechanism: of the driven joints' positions q and the springs' angles p.
+
+    Another load at the end of the beam adds its mass [kg] times the torques of `added`, the
+    equations of 1 kg there, so that no load has functions of its own.
+    """
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
+        self.added: tuple[float, Dynamics] | None = None
         self.driven = len(mechanism.driven)
         self.sprung = len(mechanism.sprung)
         self._order = [*mechanism.driven, *mechanism.sprung]
@@ -120,6 +125,12 @@ class Dynamics:
         stiffened.mechanism = self.mechanism.stiffened(factor)
         return stiffened
 
+    def loaded(self, mass: float, of_one: Dynamics) -> Dynamics:
+        """Return these equations with a mass [kg] more, or less, where another has 1 kg alone."""
+        loaded = copy.copy(self)
+        loaded.added = (mass, of_one)
+        return loaded
+
     @property
     def size(self) -> int:
         """Number of joints that move."""
@@ -130,13 +141,24 @@ class Dynamics:
 
         Positions x, speeds v and accelerations a are in the same order. Rotors turn and rub.
         """
+        torques = self._torques(x, v, a)
+        if self.added is None:
+            return torques
+        mass, of_one = self.added
+        return torques + mass * of_one.torques(x, v, a)
+
+    @cached_property
+    def _torques(self) -> ca.Function:
+        """The equations, written once: a call of it with symbols puts these in their place."""
+        x, v, a = (ca.SX.sym(name, self.size) for name in "xva")
         motions = (self._by_body(x), self._by_body(v, rate=True), self._by_body(a, rate=True))
         by_body = inverse_dynamics(self.mechanism, *motions)
         torque = self._by_joint(by_body)
         rotors = ca.DM(self.mechanism.rotor_inertia)
         friction = ca.DM(self.mechanism.friction)
         of_motors = rotors * a[: self.driven] + friction * v[: self.driven]
-        return torque + ca.vertcat(of_motors, ca.SX(self.sprung, 1))
+        torques = torque + ca.vertcat(of_motors, ca.SX(self.sprung, 1))
+        return ca.Function("torques", [x, v, a], [ca.densify(torques)])
 
     def place(self, link: tuple[int, Frame], x: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Rotation and origin of a link, seen from the ground."""
@@ -161,29 +183,43 @@ class Dynamics:
     def at_rest(self, x: ArrayLike) -> tuple[Array, Array]:
         """Torques of all joints at rest, and their slopes by the springs' angles."""
         torques, slopes = self._at_rest(x)
-        return torques.ravel(), slopes
+        torques = torques.ravel()
+        if self.added is None:
+            return torques, slopes
+        mass, of_one = self.added
+        more, steeper = of_one.at_rest(x)
+        return torques + mass * more, slopes + mass * steeper
 
     @cached_property
     def _at_rest(self) -> Compiled:
+        return Compiled(self._build_at_rest, kept_as=("at_rest", self.mechanism))
+
+    def _build_at_rest(self) -> ca.Function:
         x = ca.SX.sym("x", self.size)
         still = ca.SX(self.size, 1)
-        torque = self.torques(x, still, still)
+        torque = self._torques(x, still, still)
         slopes = ca.densify(ca.jacobian(torque, x)[:, self.driven :])
         outputs = [ca.densify(torque), slopes]
-        return Compiled(lambda: ca.Function("at_rest", [x], outputs, {"cse": True}))
+        return ca.Function("at_rest", [x], outputs, {"cse": True})
 
     def masses(self, x: ArrayLike) -> Array:
         """The mass matrix of all joints."""
         (masses,) = self._masses(x)
-        return masses
+        if self.added is None:
+            return masses
+        mass, of_one = self.added
+        return masses + mass * of_one.masses(x)
 
     @cached_property
     def _masses(self) -> Compiled:
+        return Compiled(self._build_masses, kept_as=("masses", self.mechanism))
+
+    def _build_masses(self) -> ca.Function:
         x = ca.SX.sym("x", self.size)
         a = ca.SX.sym("a", self.size)
-        torque = self.torques(x, ca.SX(self.size, 1), a)
+        torque = self._torques(x, ca.SX(self.size, 1), a)
         masses = ca.densify(ca.jacobian(torque, a))
-        return Compiled(lambda: ca.Function("masses", [x], [masses], {"cse": True}))
+        return ca.Function("masses", [x], [masses], {"cse": True})
 
     def sag(self, q: Array, begin: Array | None = None) -> Array:
         """Angles of the springs at rest, by Newton from where they may be.

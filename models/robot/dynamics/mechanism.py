@@ -100,14 +100,14 @@ class Mechanism:
             damping=np.sqrt(factor) * self.damping,
         )
 
-    def loaded(self, mass: float) -> Mechanism:
-        """Return the mechanism with a mass [kg] added at the end of the beam, or taken away."""
+    @property
+    def of_one_kilogram(self) -> Mechanism:
+        """The mechanism without masses, but for 1 kg at the end of the beam."""
         number, frame = self.links[BEAM_END]
-        body = self.bodies[number]
-        point = Inertia(mass).seen_from(frame)
-        bodies = list(self.bodies)
-        bodies[number] = replace(body, inertia=body.inertia + point)
-        return replace(self, bodies=bodies)
+        bodies = [replace(body, inertia=Inertia()) for body in self.bodies]
+        bodies[number] = replace(bodies[number], inertia=Inertia(1.0).seen_from(frame))
+        nothing = np.zeros(len(self.driven))
+        return replace(self, bodies=bodies, rotor_inertia=nothing, friction=nothing)
 
 
 class _Tree:

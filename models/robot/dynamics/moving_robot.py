@@ -45,8 +45,13 @@ class MovingRobot(RobotParts):
         """
         dynamics = self.dynamics
         if payload != 1:
-            dynamics = Dynamics(self.mechanism.loaded((payload - 1) * self.payload))
+            dynamics = dynamics.loaded((payload - 1) * self.payload, self.of_one_kilogram)
         return dynamics if stiffness == 1 else dynamics.stiffened(stiffness)
+
+    @cached_property
+    def of_one_kilogram(self) -> Dynamics:
+        """The equations of 1 kg at the end of the beam, without other masses."""
+        return Dynamics(self.mechanism.of_one_kilogram)
 
     @property
     def tip_place(self) -> tuple[int, Frame]:

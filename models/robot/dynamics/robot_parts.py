@@ -81,6 +81,11 @@ class RobotParts:
         del content["remarks"]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
+    @property
+    def made_of(self) -> tuple[str]:
+        """What it is made of, all of it, for `kept_functions`."""
+        return (self.digest,)
+
     def __hash__(self) -> int:
         return hash(self.digest)
 

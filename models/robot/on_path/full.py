@@ -35,11 +35,19 @@ class SprungRobot(ABC):
     """
 
     def __init__(self, robot: MovingRobot, stiffness: float = 1.0, payload: float = 1.0) -> None:
+        self.made_of: tuple[object, ...] = (robot, stiffness, payload)
+        """All that it is."""
         self._robot = robot
         self._dynamics = robot.dynamics_with(stiffness, payload)
         self._tip = robot.tip_place
         self.springs = self._dynamics.sprung
         """How many there are."""
+
+    def __hash__(self) -> int:
+        return hash(self.made_of)
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self.made_of == vars(other).get("made_of")
 
     @abstractmethod
     def joints(self, path: JointMotion) -> list[JointMotion]:
@@ -103,6 +111,7 @@ class FullRobot(SprungRobot):
         payload: float,
     ) -> None:
         super().__init__(robot, stiffness, payload)
+        self.made_of = (planned, robot, path, stiffness, payload)
         self._planned = planned
         self._whole_path = path
         self._path = path.extended

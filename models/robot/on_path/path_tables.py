@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from quietarm.models.joint_motion import Array, Expression
+from quietarm.models.kept_functions import kept_arrays
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.on_path.reduction import (
     FORCING,
@@ -71,8 +72,12 @@ class Tables:
 
     def at(self, place: Expression) -> Place:
         """The basis at a place."""
-        terms = max(len(table[0]) for table in (self.tips, *self.path, *self.modes.values()))
-        return Place(self.knots, place, terms)
+        return Place(self.knots, place, self.terms)
+
+    @property
+    def terms(self) -> int:
+        """Number of Chebyshev polynomials of a piece."""
+        return max(len(table[0]) for table in (self.tips, *self.path, *self.modes.values()))
 
     @property
     def least_inertia(self) -> float:
@@ -175,7 +180,49 @@ def modes_on(robot: MovingRobot, path: GeometricPath) -> tuple[int, ...]:
 @lru_cache(maxsize=16)
 def tables_of(robot: MovingRobot, path: GeometricPath) -> Tables:
     """The tables of a robot on a path; ValueError where a spring cannot carry its load."""
-    reduction = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
+    kept = kept_arrays(("tables", robot, path), lambda: _arrays_of(_fit_tables(robot, path)))
+    return _tables_of_arrays(kept)
+
+
+def _arrays_of(tables: Tables) -> dict[str, Array]:
+    """Arrays that tables are made of, by names as `modes K`."""
+    return {
+        "knots": tables.knots,
+        "tips": tables.tips,
+        "tip_rates": tables.tip_rates,
+        "frequencies": tables.frequencies,
+        "directions": np.array(tables.directions),
+        **{f"modes {name}": table for name, table in tables.modes.items()},
+        **{f"torques {name}": table for name, table in tables.torques.items()},
+        **{f"path {order}": table for order, table in enumerate(tables.path)},
+    }
+
+
+def _tables_of_arrays(arrays: Mapping[str, Array]) -> Tables:
+    return Tables(
+        knots=arrays["knots"],
+        modes={name: arrays[f"modes {name}"] for name in OF_MODES},
+        torques={name: arrays[f"torques {name}"] for name in OF_TORQUES},
+        tips=arrays["tips"],
+        tip_rates=arrays["tip_rates"],
+        path=[arrays[f"path {order}"] for order in range(_ORDERS)],
+        frequencies=arrays["frequencies"],
+        directions=tuple(arrays["directions"].tolist()),
+    )
+
+
+_ORDERS = 4
+"""Of the path: positions and their first three derivatives."""
+
+
+@lru_cache(maxsize=16)
+def _reduction_of(robot: MovingRobot, path: GeometricPath) -> Reduction:
+    """The reduction of a robot on a path to the modes that are followed."""
+    return Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
+
+
+def _fit_tables(robot: MovingRobot, path: GeometricPath) -> Tables:
+    reduction = _reduction_of(robot, path)
     layout = _Layout(reduction.at(np.array([0.5])))
 
     def columns(places: Array) -> Array:
@@ -191,7 +238,7 @@ def tables_of(robot: MovingRobot, path: GeometricPath) -> Tables:
     by_name = layout.split(found.coefficients)
     positions = path.extended.on(found.knots)
     terms = max(found.coefficients.shape[1], positions.coefficients.shape[1])
-    derivatives = [positions, *(positions.derivative(order) for order in (1, 2, 3))]
+    derivatives = [positions, *(positions.derivative(order) for order in range(1, _ORDERS))]
     return Tables(
         knots=found.knots,
         modes={name: _filled(by_name[f"modes {name}"], terms) for name in OF_MODES},
@@ -226,8 +273,37 @@ def variations_of(
     dict
         By powers of the multiples' errors: the tables that are multiplied by these.
     """
+    _, powers = _design(len(names))
+
+    def build() -> dict[str, Array]:
+        return {
+            _KEY_OF_VARIATION.format(powers=number, group=group, name=name): table
+            for number, groups in enumerate(_fit_variations(robot, path, names).values())
+            for group, tables in groups.items()
+            for name, table in tables.items()
+        }
+
+    kept = kept_arrays(("variations", robot, path, names), build)
+    variations = dict[tuple[int, ...], Groups]()
+    for number, power in enumerate(powers):
+        variations[power] = {
+            group: {
+                name: kept[_KEY_OF_VARIATION.format(powers=number, group=group, name=name)]
+                for name in tables
+            }
+            for group, tables in tables_of(robot, path).groups.items()
+        }
+    return variations
+
+
+_KEY_OF_VARIATION = "{powers} {group} {name}"
+
+
+def _fit_variations(
+    robot: MovingRobot, path: GeometricPath, names: tuple[str, ...]
+) -> dict[tuple[int, ...], Groups]:
     tables = tables_of(robot, path)
-    nominal = Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
+    nominal = _reduction_of(robot, path)
     layout = _Layout(nominal.at(np.array([0.5])))
     multiples = dict.fromkeys(VARIED, 1.0)
     errors, powers = _design(len(names))

@@ -12,7 +12,7 @@ with coefficients of the modes and of the torques. They are derivatives of the i
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -61,20 +61,21 @@ class Reduction:
         self.all_frequencies, shapes = modes_at(dynamics, q, self._sag_in_the_middle)
         """Of all modes in the middle of the path [rad/s]."""
         self.shapes = shapes[:, list(modes)]
+        self._of_added: _Forces | None = None
         self.directions = np.arange(3)
         rows = self._tip_rows(q, self._sag_in_the_middle)
         self.shapes = self.shapes * self._scales(rows)
         rows = np.abs(self._tip_rows(q, self._sag_in_the_middle)).sum(axis=1)
         self.directions = np.flatnonzero(rows > _AXIAL * rows.max())
+        self._forces = _Forces(dynamics, self.shapes)
 
     def of(self, dynamics: Dynamics) -> Reduction:
-        """The reduction for other springs or masses, with the mode shapes of this one."""
+        """The reduction for other springs or another load, with the mode shapes of this one."""
+        if dynamics.added is not None and self._of_added is None:
+            self._of_added = _Forces(dynamics.added[1], self.shapes)
         reduction = copy.copy(self)
         reduction.dynamics = dynamics
         reduction._sag_in_the_middle = sag_at(dynamics, self._path(MIDDLE))
-        if dynamics.mechanism.bodies is not self.dynamics.mechanism.bodies:
-            for name in _COMPILED:
-                vars(reduction).pop(name, None)
         return reduction
 
     def at(self, places: Array) -> Coefficients:
@@ -84,8 +85,9 @@ class Reduction:
         along = self._rates(q, sag, slope, bend)
         positions = np.hstack([q, sag])
         first, second, rows = along
-        by_place = Compiled(lambda: self._coefficients.function.map(len(places)))
-        outputs = by_place(positions.T, np.hstack([slope, first]).T, np.hstack([bend, second]).T)
+        outputs = self._coefficients(
+            positions.T, np.hstack([slope, first]).T, np.hstack([bend, second]).T
+        )
         raw = {
             name: self._by_place(name, output, len(places))
             for name, output in zip(OF_TORQUES, outputs)
@@ -127,45 +129,21 @@ class Reduction:
         by_place = np.moveaxis(table.reshape(self.dynamics.size, count, -1), 1, 0)
         return by_place[..., 0] if name in FORCING else by_place
 
-    @cached_property
-    def _coefficients(self) -> Compiled:
-        """(positions, their first and second slopes) -> `OF_TORQUES`, of all joints."""
-        dynamics = self.dynamics
-        size = dynamics.size
-        x, slope, bend = (ca.SX.sym(name, size) for name in ("x", "slope", "bend"))
-        v = ca.SX.sym("v", size)
-        still = ca.SX(size, 1)
-        at_rest = dynamics.torques(x, still, still)
-        pushed = dynamics.torques(x, still, slope) - at_rest
-        moving = dynamics.torques(x, v, bend)
-        unknown = ca.SX.sym("a", size)
-        masses = dynamics.torques(x, still, unknown)
-        shapes = [
-            ca.DM(np.concatenate([np.zeros(dynamics.driven), shape])) for shape in self.shapes.T
-        ]
+    def _coefficients(self, *motion: Array) -> list[Array]:
+        """`OF_TORQUES` of all joints by (positions, first and second slopes), a column a place."""
+        return self._with_added(lambda forces: forces.coefficients_at(*motion))
 
-        def along(expression: ca.SX, by: ca.SX) -> ca.SX:
-            return ca.horzcat(*(ca.jtimes(expression, by, shape) for shape in shapes))
+    def _second(self, *motion: Array) -> list[Array]:
+        """First and second slopes of the springs' torques at rest by the same, of one place."""
+        return self._with_added(lambda forces: forces.second(*motion))
 
-        friction = ca.vertcat(
-            ca.DM(dynamics.mechanism.friction) * slope[: dynamics.driven], ca.SX(dynamics.sprung, 1)
-        )
-        at_speed = moving - at_rest
-        by_square = ca.substitute(at_speed, v, slope) - friction
-        outputs = [
-            pushed,
-            by_square,
-            friction,
-            at_rest,
-            along(at_rest, x),
-            along(pushed, x),
-            ca.substitute(along(at_speed, x), v, slope),
-            ca.substitute(along(moving, v), v, slope),
-            along(masses, unknown),
-        ]
-        dense = [ca.densify(output) for output in outputs]
-        inputs = [x, slope, bend]
-        return Compiled(lambda: ca.Function("coefficients", inputs, dense, {"cse": True}))
+    def _with_added(self, values: Callable[[_Forces], list[Array]]) -> list[Array]:
+        """Values that are linear in the masses, with those of the added load."""
+        own = values(self._forces)
+        added = self.dynamics.added
+        if added is None or self._of_added is None:
+            return own
+        return [here + added[0] * of_one for here, of_one in zip(own, values(self._of_added))]
 
     def _rates(self, q: Array, sag: Array, slope: Array, bend: Array) -> tuple[Array, Array, Array]:
         """First and second slopes of the sag by s, and displacements of the tip by the modes."""
@@ -182,19 +160,6 @@ class Reduction:
             second.append(p2)
             rows.append(self._tip_rows(position, p))
         return np.array(first), np.array(second), np.array(rows)
-
-    @cached_property
-    def _second(self) -> Compiled:
-        """(x, its first slope, its second) -> the same of the springs' torques at rest."""
-        dynamics = self.dynamics
-        x, slope, bend = (ca.SX.sym(name, dynamics.size) for name in ("x", "slope", "bend"))
-        still = ca.SX(dynamics.size, 1)
-        torque = dynamics.torques(x, still, still)[dynamics.driven :]
-        first = ca.jtimes(torque, x, slope)
-        second = ca.jtimes(first, x, slope) + ca.jtimes(torque, x, bend)
-        dense = [ca.densify(first), ca.densify(second)]
-        inputs = [x, slope, bend]
-        return Compiled(lambda: ca.Function("second", inputs, dense, {"cse": True}))
 
     @cached_property
     def _tip_slopes(self) -> Compiled:
@@ -221,7 +186,78 @@ class Reduction:
         return np.where(moves, signs / np.where(moves, largest, 1.0), 1 / angles)
 
 
-_COMPILED = ("_coefficients", "_second", "_tip_slopes")
-"""What is compiled from the equations of a dynamics."""
 _LEAST_OF_TIP = 1e-6
 """Displacement of the tip [m] by a mode of 1 rad, below which the mode does not move it."""
+
+
+class _Forces:
+    """Forces along a path, as functions that are linear in the masses."""
+
+    def __init__(self, dynamics: Dynamics, shapes: Array) -> None:
+        self._dynamics = dynamics
+        self._shapes = shapes
+
+    def coefficients_at(self, *motion: Array) -> list[Array]:
+        """`OF_TORQUES` of all joints; a column a place."""
+        count = motion[0].shape[1]
+        return Compiled(lambda: self._coefficients.function.map(count))(*motion)
+
+    @cached_property
+    def _coefficients(self) -> Compiled:
+        """(positions, their first and second slopes) -> `OF_TORQUES`, of all joints."""
+        parts = ("coefficients", self._dynamics.mechanism, self._shapes)
+        return Compiled(self._build_coefficients, kept_as=parts)
+
+    @cached_property
+    def second(self) -> Compiled:
+        """(x, its first slope, its second) -> the same of the springs' torques at rest."""
+        return Compiled(self._build_second, kept_as=("second", self._dynamics.mechanism))
+
+    def _build_coefficients(self) -> ca.Function:
+        dynamics = self._dynamics
+        size = dynamics.size
+        x, slope, bend = (ca.SX.sym(name, size) for name in ("x", "slope", "bend"))
+        v = ca.SX.sym("v", size)
+        still = ca.SX(size, 1)
+        at_rest = dynamics.torques(x, still, still)
+        pushed = dynamics.torques(x, still, slope) - at_rest
+        moving = dynamics.torques(x, v, bend)
+        unknown = ca.SX.sym("a", size)
+        masses = dynamics.torques(x, still, unknown)
+        shapes = [
+            ca.DM(np.concatenate([np.zeros(dynamics.driven), shape])) for shape in self._shapes.T
+        ]
+
+        def along(expression: ca.SX, by: ca.SX) -> ca.SX:
+            return ca.horzcat(*(ca.jtimes(expression, by, shape) for shape in shapes))
+
+        friction = ca.vertcat(
+            ca.DM(dynamics.mechanism.friction) * slope[: dynamics.driven], ca.SX(dynamics.sprung, 1)
+        )
+        at_speed = moving - at_rest
+        by_square = ca.substitute(at_speed, v, slope) - friction
+        outputs = [
+            pushed,
+            by_square,
+            friction,
+            at_rest,
+            along(at_rest, x),
+            along(pushed, x),
+            ca.substitute(along(at_speed, x), v, slope),
+            ca.substitute(along(moving, v), v, slope),
+            along(masses, unknown),
+        ]
+        dense = [ca.densify(output) for output in outputs]
+        inputs = [x, slope, bend]
+        return ca.Function("coefficients", inputs, dense, {"cse": True})
+
+    def _build_second(self) -> ca.Function:
+        dynamics = self._dynamics
+        x, slope, bend = (ca.SX.sym(name, dynamics.size) for name in ("x", "slope", "bend"))
+        still = ca.SX(dynamics.size, 1)
+        torque = dynamics.torques(x, still, still)[dynamics.driven :]
+        first = ca.jtimes(torque, x, slope)
+        second = ca.jtimes(first, x, slope) + ca.jtimes(torque, x, bend)
+        dense = [ca.densify(first), ca.densify(second)]
+        inputs = [x, slope, bend]
+        return ca.Function("second", inputs, dense, {"cse": True})
