@@ -232,13 +232,19 @@ class Evidence:
         new = {name: value for name, (_, value) in self.changed.items()}
         return replace(self._plan.task.plant, **new)
 
+    @cached_property
+    def told_plant(self) -> Plant:
+        """The plant with each frequency and damping that the recordings tell, changed or not."""
+        values = {estimate.parameter: estimate.value for estimate in self.estimates}
+        return replace(self._plan.task.plant, **values)
+
     def machine(self) -> Identified:
         """The plant with all that recordings tell of it."""
         values = {estimate.parameter: estimate.value for estimate in self.estimates}
         names = modal_names(self._plan.task.plant)
         told = values.keys()
         return Identified(
-            plant=replace(self._plan.task.plant, **values),
+            plant=self.told_plant,
             estimates=self.estimates,
             not_identifiable={
                 name: "the swings after the moves are too small"
@@ -361,7 +367,8 @@ class Evidence:
         """Share of the correction that is worth making: 0 where what is left may be noise."""
         left = np.abs(self._again)
         unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
-        if not self.changed and left.sum() <= self.floor:
+        unseen = self.beyond if self.by_joint else 0.0
+        if left.sum() <= self.floor + unseen and (self.by_joint or not self.changed):
             return 0.0
         power = float((left**2).sum())
         return power / (power + 2 * float((unsure**2).sum()))
@@ -432,11 +439,14 @@ class Evidence:
             return 0.0
         largest = 0.0
         for estimate in self.estimates:
-            deviation = (estimate.high - estimate.low) / 4
-            if not is_frequency(self.plant, estimate.parameter):
+            name = estimate.parameter
+            if not is_frequency(self.plant, name):
                 continue
-            value = getattr(self.plant, estimate.parameter) + deviation
-            told = self._told_by(replace(self.plant, **{estimate.parameter: value}))[-1]
+            # what the torque hides is in every recording alike: many know no more than the best
+            alone = min(part.deviations[name] for part in self._parts if name in part.values)
+            deviation = max((estimate.high - estimate.low) / 4, alone)
+            value = getattr(self.plant, name) + deviation
+            told = self._told_by(replace(self.plant, **{name: value}))[-1]
             largest = max(largest, 2 * float(np.abs(told - self._told[-1]).sum()))
         return largest
 
@@ -444,7 +454,9 @@ class Evidence:
     def doubts(self) -> list[str]:
         """Whether moves repeat."""
         most = 0.5  # share of what is left, by which moves may differ
-        if self.scatter is None or self.scatter <= most * self.left:
+        beyond = 3.0  # deviations of the noise, by which they differ at any rate
+        noise = beyond * float(np.sqrt(2) * self._of_one[-1].sum())
+        if self.scatter is None or self.scatter <= max(most * self.left, noise):
             return []
         sizes = [f"{1e3 * float(s):.3g}" for s in np.abs(self._swings[-1]).sum(axis=1)]
         return [
