@@ -22,6 +22,7 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory, RecordedArrival
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.record import versions
+from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -61,6 +62,21 @@ class ReadMove:
 def is_by_joint(recording: Recording) -> bool:
     """Whether a recording has no tip, so that its swing follows from the joint."""
     return recording.tip is None and recording.acceleration is None
+
+
+def motion_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> JudgedMotion:
+    """An executed move on a plant, with what else a task says."""
+    start, target, duration = move.move
+    executed = replace(
+        task.certain, plant=plant, start=start, target=target, duration=duration, final=None
+    )
+    return JudgedMotion.of_profile(executed, move.profile, move.coefficients)
+
+
+def told_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> ComplexArray:
+    """What a plant says of the set points of an executed move: each mode's swing at arrival."""
+    motion = motion_of(move, task, plant)
+    return TipModes(plant, move.move[1]).amplitudes(motion.arrival[0])
 
 
 def evidence_of(plan: Plan, read: Sequence[ReadMove]) -> Evidence:
@@ -261,12 +277,7 @@ class Evidence:
 
     def _motion(self, move: ExecutedMove, plant: Plant) -> JudgedMotion:
         """An executed move on a plant."""
-        start, target, duration = move.move
-        task = replace(
-            self._plan.task.certain,
-            plant=plant, start=start, target=target, duration=duration, final=None,
-        )  # fmt: skip
-        return JudgedMotion.of_profile(task, move.profile, move.coefficients)
+        return motion_of(move, self._plan.task, plant)
 
     @cached_property
     def _told(self) -> ComplexArray:
@@ -275,9 +286,7 @@ class Evidence:
 
     def _told_by(self, plant: Plant) -> ComplexArray:
         """What a plant says of the set points of each move (moves, modes)."""
-        modes = TipModes(plant, self._plan.task.target)
-        states = [self._motion(move, plant).arrival[0] for move in self.history.moves]
-        return np.stack([modes.amplitudes(state) for state in states])
+        return np.stack([told_of(move, self._plan.task, plant) for move in self.history.moves])
 
     @lru_cache(maxsize=4)  # noqa: B019  # it lives as long as the evidence
     def seen_share(self, plant: Plant) -> float | None:

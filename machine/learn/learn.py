@@ -69,9 +69,9 @@ def learn(
         When no motion within the limits makes up for what was left.
     """
     dearer = positive("dearer", dearer)
-    _check_plan(plan)
+    check_plan(plan)
     recordings, notes = without_glitches(checked_recordings(recordings))
-    read = [_read(plan, recording) for recording in recordings]
+    read = [read_move(plan, recording) for recording in recordings]
     evidence = evidence_of(plan, read)
     if any(one.by_joint for one in read):  # once more, by the frequency that all moves tell
         read = [one.on(evidence.told_plant, plan.task.target) for one in read]
@@ -110,7 +110,7 @@ def learn(
     )
 
 
-def _check_plan(plan: Plan) -> None:
+def check_plan(plan: Plan) -> None:
     """ValueError where nothing of a plan could be learned."""
     plant = plan.task.plant
     if plan.profile.size == 0:
@@ -130,8 +130,8 @@ def _check_plan(plan: Plan) -> None:
         )
 
 
-def _read(plan: Plan, recording: Recording) -> ReadMove:
-    """The start and the swing of one recording."""
+def read_move(plan: Plan, recording: Recording) -> ReadMove:
+    """The start of a plan's move in a recording, and the swing after it."""
     task = plan.task
     found = find_start(plan, recording)
     doubt = off_the_path(plan, recording, found)
