@@ -479,6 +479,78 @@ def energy_straight_in_space():
     return qa.plan_move(qa.PointToPoint(robot().along(line), target=1.0, duration=1.0)).energy
 
 
+AXIS_OF_A_USER = qa.LinearAxis(omega1=2 * pi * 4.9, zeta1=0.01, mass=60.0, load=12.0, friction=30.0)
+"""What the user of notebook 14 believes of the machine."""
+
+
+def executed(plan, load=12.0, seconds=1.5):
+    """Time [s], motor, tool [m] and force [N] of the machine of notebook 14 for a plan."""
+    step = 2.5e-4
+    time = np.arange(0, plan.task.duration + seconds, step)
+    stiffness, damping = 12.0 * (2 * pi * 5.3) ** 2, 0.02 * 12.0 * 2 * pi * 5.3
+    place = speed = swing = rate = force = 0.0
+    rows = []
+    for place_set, speed_set, acceleration_set in plan.sampled(time).joint.tolist():
+        error = speed_set - speed + 50.0 * (place_set - place)
+        force += step / 1e-3 * (72.0 * acceleration_set + 15e3 * error - force)
+        friction = 20.0 * np.tanh(speed / 1e-3) + 30.0 * speed
+        pull = stiffness * swing + damping * rate
+        acceleration = (force - friction + pull) / 60.0
+        speed += step * acceleration
+        place += step * speed
+        rate += step * (-pull / load - acceleration)
+        swing += step * rate
+        rows.append((place, place + 1.15 * swing, force))
+    return time, *np.array(rows).T
+
+
+def recorded(run, seed):
+    """The recording of a run by a laser, an encoder and the drive's force."""
+    time, motor, tool, force = (values[::8] for values in run)
+    random = np.random.default_rng(seed)
+    tip = tool + random.normal(0, 2e-5, len(time))
+    angle = np.round(motor / 2e-6) * 2e-6
+    torque = force + random.normal(0, 2.0, len(time))
+    return qa.Recording(time, tip=tip, angle=angle, torque=torque, name=f"run {seed}")
+
+
+def left_by(plan, load=12.0):
+    """What the machine leaves of a plan [mm]."""
+    time, _, tool, _ = executed(plan, load)
+    return 1e3 * float(np.ptp(tool[time > plan.task.duration + 0.05])) / 2
+
+
+@cache
+def learned_moves(count):
+    """The plan and the answer of each move, the first with the user's model."""
+    task = qa.PointToPoint(AXIS_OF_A_USER, target=0.5, duration=0.7)
+    plan = qa.plan_move(task, SIX)
+    moves = []
+    for seed in range(1, count + 1):
+        learned = qa.learn(plan, [recorded(executed(plan), seed)])
+        moves.append((plan, learned))
+        plan = learned.plan
+    return moves
+
+
+def left_without_a_laser():
+    ((first, _),) = learned_moves(1)
+    run = recorded(executed(first), 1)
+    blind = qa.Recording(run.time, angle=run.angle, torque=run.torque, name="blind")
+    return left_by(qa.learn(first, [blind]).plan)
+
+
+def left_with_other_loads():
+    *_, (_, learned) = learned_moves(2)
+    return [left_by(learned.plan, load) for load in (11.0, 13.0)]
+
+
+def left_by_the_frequency_alone():
+    ((_, learned),) = learned_moves(1)
+    task = qa.PointToPoint(learned.machine.plant, target=0.5, duration=0.7)
+    return left_by(qa.plan_move(task, SIX))
+
+
 EXERCISES = {
     "01": (
         Numbers("the shortest duration with a residual below 1 mm", "s", quiet_duration),
@@ -653,6 +725,24 @@ EXERCISES = {
         ),
         Numbers("the energies in 0.8, 1.0 and 1.4 s", "J", energies_by_duration, count=3),
         Numbers("the energy of the straight move", "J", energy_straight_in_space),
+    ),
+    "14": (
+        Numbers(
+            "what the second move leaves without a laser", "mm", left_without_a_laser, tolerance=0.2
+        ),
+        Numbers(
+            "what the third plan leaves with 11 kg and with 13 kg",
+            "mm",
+            left_with_other_loads,
+            count=2,
+            tolerance=0.1,
+        ),
+        Numbers(
+            "what the plan with the learned machine leaves",
+            "mm",
+            left_by_the_frequency_alone,
+            tolerance=0.1,
+        ),
     ),
 }
 """What the three exercises of every notebook ask for."""

@@ -22,6 +22,7 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory, RecordedArrival
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.record import versions
+from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -61,6 +62,21 @@ class ReadMove:
 def is_by_joint(recording: Recording) -> bool:
     """Whether a recording has no tip, so that its swing follows from the joint."""
     return recording.tip is None and recording.acceleration is None
+
+
+def motion_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> JudgedMotion:
+    """An executed move on a plant, with what else a task says."""
+    start, target, duration = move.move
+    executed = replace(
+        task.certain, plant=plant, start=start, target=target, duration=duration, final=None
+    )
+    return JudgedMotion.of_profile(executed, move.profile, move.coefficients)
+
+
+def told_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> ComplexArray:
+    """What a plant says of the set points of an executed move: each mode's swing at arrival."""
+    motion = motion_of(move, task, plant)
+    return TipModes(plant, move.move[1]).amplitudes(motion.arrival[0])
 
 
 def evidence_of(plan: Plan, read: Sequence[ReadMove]) -> Evidence:
@@ -232,13 +248,19 @@ class Evidence:
         new = {name: value for name, (_, value) in self.changed.items()}
         return replace(self._plan.task.plant, **new)
 
+    @cached_property
+    def told_plant(self) -> Plant:
+        """The plant with each frequency and damping that the recordings tell, changed or not."""
+        values = {estimate.parameter: estimate.value for estimate in self.estimates}
+        return replace(self._plan.task.plant, **values)
+
     def machine(self) -> Identified:
         """The plant with all that recordings tell of it."""
         values = {estimate.parameter: estimate.value for estimate in self.estimates}
         names = modal_names(self._plan.task.plant)
         told = values.keys()
         return Identified(
-            plant=replace(self._plan.task.plant, **values),
+            plant=self.told_plant,
             estimates=self.estimates,
             not_identifiable={
                 name: "the swings after the moves are too small"
@@ -255,12 +277,7 @@ class Evidence:
 
     def _motion(self, move: ExecutedMove, plant: Plant) -> JudgedMotion:
         """An executed move on a plant."""
-        start, target, duration = move.move
-        task = replace(
-            self._plan.task.certain,
-            plant=plant, start=start, target=target, duration=duration, final=None,
-        )  # fmt: skip
-        return JudgedMotion.of_profile(task, move.profile, move.coefficients)
+        return motion_of(move, self._plan.task, plant)
 
     @cached_property
     def _told(self) -> ComplexArray:
@@ -269,9 +286,7 @@ class Evidence:
 
     def _told_by(self, plant: Plant) -> ComplexArray:
         """What a plant says of the set points of each move (moves, modes)."""
-        modes = TipModes(plant, self._plan.task.target)
-        states = [self._motion(move, plant).arrival[0] for move in self.history.moves]
-        return np.stack([modes.amplitudes(state) for state in states])
+        return np.stack([told_of(move, self._plan.task, plant) for move in self.history.moves])
 
     @lru_cache(maxsize=4)  # noqa: B019  # it lives as long as the evidence
     def seen_share(self, plant: Plant) -> float | None:
@@ -361,7 +376,8 @@ class Evidence:
         """Share of the correction that is worth making: 0 where what is left may be noise."""
         left = np.abs(self._again)
         unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
-        if not self.changed and left.sum() <= self.floor:
+        unseen = self.beyond if self.by_joint else 0.0
+        if left.sum() <= self.floor + unseen and (self.by_joint or not self.changed):
             return 0.0
         power = float((left**2).sum())
         return power / (power + 2 * float((unsure**2).sum()))
@@ -432,11 +448,14 @@ class Evidence:
             return 0.0
         largest = 0.0
         for estimate in self.estimates:
-            deviation = (estimate.high - estimate.low) / 4
-            if not is_frequency(self.plant, estimate.parameter):
+            name = estimate.parameter
+            if not is_frequency(self.plant, name):
                 continue
-            value = getattr(self.plant, estimate.parameter) + deviation
-            told = self._told_by(replace(self.plant, **{estimate.parameter: value}))[-1]
+            # what the torque hides is in every recording alike: many know no more than the best
+            alone = min(part.deviations[name] for part in self._parts if name in part.values)
+            deviation = max((estimate.high - estimate.low) / 4, alone)
+            value = getattr(self.plant, name) + deviation
+            told = self._told_by(replace(self.plant, **{name: value}))[-1]
             largest = max(largest, 2 * float(np.abs(told - self._told[-1]).sum()))
         return largest
 
@@ -444,7 +463,9 @@ class Evidence:
     def doubts(self) -> list[str]:
         """Whether moves repeat."""
         most = 0.5  # share of what is left, by which moves may differ
-        if self.scatter is None or self.scatter <= most * self.left:
+        beyond = 3.0  # deviations of the noise, by which they differ at any rate
+        noise = beyond * float(np.sqrt(2) * self._of_one[-1].sum())
+        if self.scatter is None or self.scatter <= max(most * self.left, noise):
             return []
         sizes = [f"{1e3 * float(s):.3g}" for s in np.abs(self._swings[-1]).sum(axis=1)]
         return [

@@ -31,6 +31,8 @@ _MOST_UNEXPLAINED = {"angle": 1e-4}
 """Share of a signal's power that the plan leaves unexplained by the right clock; a joint follows
 the plan closely."""
 _PER_CENT = 1e-2
+_LEAST_STRETCH = 4e-3
+"""Share by which a clock may be off."""
 _SAME_WAY = 0.03
 """Share by which the recorded way of a joint may differ from the plan's."""
 
@@ -73,7 +75,7 @@ def find_start(plan: Plan, recording: Recording) -> Start:
         )
     signal = next(name for name in _LEAST_MET if name in recording.measured)
     values = recording.measured[signal].reshape(len(recording.time), -1)[:, 0]
-    search, lag, explained = _best_search(plan, recording.time, values, signal)
+    search, lag, explained = best_search(plan, recording.time, values, signal)
     if explained < _LEAST_MET[signal]:
         most = _MOST_UNEXPLAINED.get(signal, 0.02)
         search.refuse_other_clock(recording.name, explained, most)
@@ -90,17 +92,20 @@ def find_start(plan: Plan, recording: Recording) -> Start:
     return Start(lag, signal, explained)
 
 
-def _best_search(
-    plan: Plan, time: Array, values: Array, signal: str
-) -> tuple[_Search, float, float]:
-    """The search by the plant's frequencies, or by others that meet a tip's swing better."""
-    enough = 0.98  # share that is explained, from which on no other frequency is tried
-    found = list[tuple[float, float, _Search]]()
+def best_search(
+    plan: Plan, time: Array, values: Array, signal: str, enough: float = 0.98
+) -> tuple[Search, float, float]:
+    """The search by the plant's frequencies, or by others that meet a tip's swing better.
+
+    With its place and the share that is explained there. No other frequency is tried from a share
+    on that is enough.
+    """
+    found = list[tuple[float, float, Search]]()
     for factor in (1.0, *np.geomspace(0.7, 1.4, 21)):
         motion = _with_frequencies(plan, float(factor))
         if motion is None:
             break
-        search = _Search(time, values, _courses(motion, signal), plan.task.duration)
+        search = Search(time, values, courses_of(motion, signal), plan.task.duration)
         lag, explained = search.best(1.0)
         found.append((explained, lag, search))
         if signal in ("angle", "torque") or explained > enough:
@@ -150,7 +155,7 @@ def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
     if start.signal != "angle" or recording.tip is None:
         return
     values = recording.tip.reshape(len(recording.time), -1)[:, 0]
-    search = _Search(recording.time, values, _courses(plan.candidate, "angle"), plan.task.duration)
+    search = Search(recording.time, values, courses_of(plan.candidate, "angle"), plan.task.duration)
     _, explained = search.refined(start.time)
     if 1 - explained < far_better * (1 - start.explained):
         raise ValueError(
@@ -170,7 +175,7 @@ def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
         motion = JudgedMotion.of_profile(task, move.profile, move.coefficients)
         if move.coefficients == plan.coefficients:
             continue
-        search = _Search(recording.time, values, _courses(motion, start.signal), task.duration)
+        search = Search(recording.time, values, courses_of(motion, start.signal), task.duration)
         _, explained = search.refined(start.time)
         if 1 - explained < far_better * (1 - start.explained):
             raise ValueError(
@@ -188,7 +193,7 @@ def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
     if recording.tip is None:
         return None
     values = recording.tip.reshape(len(recording.time), -1)[:, 0]
-    search = _Search(recording.time, values, _courses(motion, "tip"), motion.task.duration)
+    search = Search(recording.time, values, courses_of(motion, "tip"), motion.task.duration)
     lag, explained = search.best(1.0)
     if explained < enough:
         return None
@@ -199,8 +204,11 @@ def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
 _WORDS = {"angle": "joint", "torque": "torque", "tip": "tip", "acceleration": "accelerometer"}
 
 
-def _courses(motion: JudgedMotion, signal: str) -> Sequence[Array]:
-    """What a signal consists of during the move, each with an unknown size: rows of `_POINTS`."""
+def courses_of(motion: JudgedMotion, signal: str) -> Sequence[Array]:
+    """What a signal consists of during the move, each with an unknown size: rows of `_POINTS`.
+
+    `served` is the angle as a servo without feed-forward lets it follow.
+    """
     task = motion.task
     times = task.duration * np.linspace(-_BEFORE, 1, _POINTS)
     moving = times >= 0
@@ -211,6 +219,7 @@ def _courses(motion: JudgedMotion, signal: str) -> Sequence[Array]:
     tip_acceleration = np.gradient(np.gradient(tip, times[moving]), times[moving])
     courses = {
         "angle": [place - task.start],
+        "served": [place - task.start, acceleration],
         "torque": [acceleration, tip_acceleration, speed, np.sign(np.round(speed, 6))],
         "tip": [place - task.start, tip],
         "acceleration": [acceleration, tip_acceleration],
@@ -219,8 +228,18 @@ def _courses(motion: JudgedMotion, signal: str) -> Sequence[Array]:
     return [np.concatenate([np.zeros(resting), course]) for course in courses[signal]]
 
 
-class _Search:
-    """The places of a recording, and how much of its signal a plan explains there."""
+class Search:
+    """The places of a recording, and how much of its signal a plan explains there.
+
+    Parameters
+    ----------
+    time, values : array
+        The recorded signal.
+    courses : sequence of array
+        What it consists of during the move, as `courses_of` gives them.
+    duration : float
+        Of the move [s].
+    """
 
     def __init__(
         self, time: Array, values: Array, courses: Sequence[Array], duration: float
@@ -278,15 +297,16 @@ class _Search:
         return lag + step * float(found.x[0]), 1 - float(found.fun)
 
     def refuse_stretched(self, name: str, lag: float, explained: float, met: float) -> None:
-        """ValueError where a clock that is off by some per cent meets the move, and the plan's not.
+        """ValueError where a clock that is off by some per mille meets the move, not the plan's.
 
-        A move is met where no more than a share is unexplained.
+        A move is met where no more than a share is unexplained, and far less than by the plan.
         """
-        not_met = 10 * met
-        if 1 - explained < not_met:
+        far_better = 0.05  # a servo's own error has no clock that explains it: at least 0.38
+        if 1 - explained < 0.1 * met:
             return
         begin, stretch, unexplained = self._with_clock(lag, 1.0)
-        off = abs(stretch - 1) > _PER_CENT and unexplained < met
+        is_met = unexplained < min(met, far_better * (1 - explained))
+        off = abs(stretch - 1) > _LEAST_STRETCH and is_met
         if off and self._holds_all(begin, stretch):
             raise ValueError(_other_clock(name, stretch, self._duration))
 

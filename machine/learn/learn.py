@@ -13,12 +13,14 @@ from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
 from quietarm.machine.learn.check_columns import check_columns
+from quietarm.machine.learn.check_move import check_move
 from quietarm.machine.learn.evidence import ReadMove, evidence_of, is_by_joint
 from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
 from quietarm.machine.learn.read_swing import check_length, read_swing
+from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, checked_recordings
 from quietarm.ocp.checks import positive, takes
@@ -67,12 +69,12 @@ def learn(
         When no motion within the limits makes up for what was left.
     """
     dearer = positive("dearer", dearer)
-    _check_plan(plan)
+    check_plan(plan)
     recordings, notes = without_glitches(checked_recordings(recordings))
-    read = [_read(plan, recording) for recording in recordings]
+    read = [read_move(plan, recording) for recording in recordings]
     evidence = evidence_of(plan, read)
     if any(one.by_joint for one in read):  # once more, by the frequency that all moves tell
-        read = [one.on(evidence.plant, plan.task.target) for one in read]
+        read = [one.on(evidence.told_plant, plan.task.target) for one in read]
         evidence = evidence_of(plan, read)
     history = evidence.history
     step = evidence.step
@@ -108,7 +110,7 @@ def learn(
     )
 
 
-def _check_plan(plan: Plan) -> None:
+def check_plan(plan: Plan) -> None:
     """ValueError where nothing of a plan could be learned."""
     plant = plan.task.plant
     if plan.profile.size == 0:
@@ -128,8 +130,8 @@ def _check_plan(plan: Plan) -> None:
         )
 
 
-def _read(plan: Plan, recording: Recording) -> ReadMove:
-    """The start and the swing of one recording."""
+def read_move(plan: Plan, recording: Recording) -> ReadMove:
+    """The start of a plan's move in a recording, and the swing after it."""
     task = plan.task
     found = find_start(plan, recording)
     doubt = off_the_path(plan, recording, found)
@@ -141,12 +143,18 @@ def _read(plan: Plan, recording: Recording) -> ReadMove:
         refuse_exchanged(plan, recording, found)
     if not is_by_joint(recording):
         after = read_swing(recording, arrival, task.plant, task.target)
+        better = check_move(plan, recording, found, after.measured.values)
+        if abs(better - start) * float(TipModes(task.plant, task.target).frequencies[-1]) > 1 / 360:
+            start, arrival = better, better + task.duration
+            check_length(recording, arrival, task.plant, task.target)
+            after = read_swing(recording, arrival, task.plant, task.target)
         return ReadMove(recording, start, arrival, after, doubt)
     if recording.angle is None:
         raise ValueError(
             f"{recording.name}: a torque alone does not tell how the tip swings; name the column "
             "of the joint by --angle, or that of a tip by --tip"
         )
+    check_move(plan, recording, found, {})
     part = read_torque(recording, start, arrival, task.plant)
     plant = with_values(task.plant, part.values)
     after = swing_by_joint(recording, part, arrival, plant, task.target)

@@ -83,6 +83,19 @@ def parse_share(text: str, name: str) -> float:
     return value
 
 
+def parse_move(text: str, axes: Sequence[str], plant: Plant) -> dict[str, float]:
+    """Read which move of a dataset is meant: a value of each axis, target=400mm,duration=800ms."""
+    example = ",".join(f"{name}={'800ms' if name == 'duration' else '0.4'}" for name in axes)
+    pairs = (parse_pair(pair, "an axis", example) for pair in text.split(","))
+    values = once(pairs, "")
+    if {*values} != {*axes}:
+        raise ValueError(f"{text} is no move of the dataset; give a value of each axis: {example}")
+    several = {
+        name: parse_of_plant(name, values[name], plant.joint, plant.tip_unit) for name in axes
+    }
+    return single_values(several)
+
+
 def parse_margin(text: str) -> float:
     """Read how many times the residual limit a band is: 3, or 1.5."""
     margin = parse_quantity(text, "-", "a margin")

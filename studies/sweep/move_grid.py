@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import groupby, product
 from typing import Any
 
@@ -13,9 +13,10 @@ import numpy as np
 from quietarm.models import Plant
 from quietarm.models.dimensions import WAY
 from quietarm.ocp import PointToPoint
-from quietarm.ocp.checks import finite, has_no, quoted
+from quietarm.ocp.checks import IF_STATED, finite, has_no, quoted
 from quietarm.ocp.task import OF_MOVES
 from quietarm.ocp.window import DefaultWindow, default_window
+from quietarm.studies.sweep.learned_arrivals import LearnedArrivals
 
 MOST_VALUES = 100_000
 """Of an axis."""
@@ -47,10 +48,12 @@ class MoveGrid:
 
     Parameters of the plant come before the quantities of the move: chunks then have few plants.
     All moves have one residual window, the task's; where nobody gave it, the longest of their own.
+    Of a grid that was learned from recordings each arrives in a state of its own.
     """
 
     task: PointToPoint
     axes: tuple[Axis, ...]
+    arrivals: LearnedArrivals | None = field(default=None, metadata=IF_STATED)
 
     def __post_init__(self) -> None:
         units = self.task.plant.units()
@@ -122,7 +125,11 @@ class MoveGrid:
     def task_at(self, at: Mapping[str, float]) -> PointToPoint:
         """The move of a value of every axis."""
         move = {name: at[name] for name in OF_MOVES if name in at}
-        return replace(self.task, plant=self._plant_at(at), **move)
+        task = replace(self.task, plant=self._plant_at(at), **move)
+        if self.arrivals is None:
+            return task
+        final = self.arrivals.final(task.plant, (task.start, task.target, task.duration))
+        return replace(task, final=final)
 
     def _plant_at(self, at: Mapping[str, float]) -> Plant:
         """The plant of a value of every axis; those over the move do not count."""

@@ -16,8 +16,8 @@ Row = tuple[str, str]
 def learning_sentence(learned: Learning) -> str:
     """What was left, what of it changes, what the next move leaves, and what none takes away."""
     plant = learned.plan.task.plant
-    left = _with_unit(learned.left, plant)
-    floor = _with_unit(learned.floor, plant)
+    left = with_unit(learned.left, plant)
+    floor = with_unit(learned.floor, plant)
     whose = (
         "by friction, noise and what a torque does not tell"
         if learned.by_joint
@@ -31,11 +31,11 @@ def learning_sentence(learned: Learning) -> str:
     changed = _changed(learned)
     if changed:
         share = (
-            f" (by the frequency {_with_unit(learned.by_frequency, plant)}: {changed}; repeatable "
-            f"{_with_unit(learned.repeatable, plant)})"
+            f" (by the frequency {with_unit(learned.by_frequency, plant)}: {changed}; repeatable "
+            f"{with_unit(learned.repeatable, plant)})"
         )
     return (
-        f"left {left}{share}; next move: at most {_with_unit(learned.next_at_most, plant)}; "
+        f"left {left}{share}; next move: at most {with_unit(learned.next_at_most, plant)}; "
         f"floor {whose} {floor}"
     )
 
@@ -64,7 +64,7 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
             )
         )
     if learned.scatter is not None:
-        rows.append(("scatter", f"{_with_unit(learned.scatter, plant)} from move to move"))
+        rows.append(("scatter", f"{with_unit(learned.scatter, plant)} from move to move"))
     if not learned.is_done:
         more = 100 * (learned.plan.energy / plan.energy - 1)
         rows.append(("step", f"{learned.step:.0%} of the correction"))
@@ -89,5 +89,6 @@ def _number(length: float, plant: Plant) -> str:
     return f"{value:.3g}" if value >= 1 else f"{value:.2g}"
 
 
-def _with_unit(length: float, plant: Plant) -> str:
+def with_unit(length: float, plant: Plant) -> str:
+    """A displacement of the tip with its unit."""
     return f"{_number(length, plant)} {'mm' if plant.tip_unit == 'm' else 'deg'}"

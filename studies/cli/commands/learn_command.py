@@ -14,10 +14,18 @@ from quietarm.ocp import Plan
 from quietarm.ocp.files import check_writable
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SOLVER, busy, command, option
-from quietarm.studies.cli.outputs import PICTURE, answer_files, finish, output_option
-from quietarm.studies.cli.quantities import parse_share
+from quietarm.studies.cli.outputs import (
+    DATASET,
+    PICTURE,
+    answer_files,
+    ending_of,
+    finish,
+    output_option,
+)
+from quietarm.studies.cli.quantities import parse_move, parse_share
 from quietarm.studies.cli.recording_options import RECORDED, read_recordings
 from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.sweep.learned_rows import set_rows, set_sentence
 from quietarm.views import pictures
 from quietarm.views.report.learning_rows import learning_rows, learning_sentence
 
@@ -33,6 +41,9 @@ def _machine_file(text: str) -> Path:
     click.Argument(["plan"], type=INPUT, metavar="PLAN"),
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING..."),
     *RECORDED,
+    option("--move", "moves", multiple=True, metavar="AXIS=VALUE,...",
+           help="Of a dataset of moves: which of them a RECORDING is of, as "
+           "target=400mm,duration=800ms; once for each, in their order."),
     option("--dearer", type=Parsed("share", partial(parse_share, name="--dearer")), default="2%",
            metavar="SHARE", help="By how much more energy the next plan may take."),
     option("--machine", type=Parsed("file", _machine_file), metavar="FILE",
@@ -40,21 +51,34 @@ def _machine_file(text: str) -> Path:
            "writes it: a PLANT for other moves."),
     *SOLVER,
     output_option({".json": "the next plan, which knows what it was learned from",
-                   ".csv": "its path at 1 kHz", PICTURE: "a picture of it"}, formats=["plan"]),
+                   ".csv": "its path at 1 kHz", PICTURE: "a picture of it",
+                   DATASET: "of a dataset, all its moves, corrected"}, formats=["plan"]),
 )  # fmt: skip
 def learn(given: Given) -> None:
     """Plan the next move of PLAN's task, by each RECORDING of the executed PLAN.
 
     The move's start is found in the recording, which lasts until two periods after arrival or
     longer. The next plan makes up for what was left, and knows it: learn again from its recording.
+    PLAN may be a dataset of quietarm sweep: recordings of some of its moves correct all of them.
 
     \b
     Examples:
       quietarm learn plan.json run.csv --tip tool_mm --angle axis_mm --output next.json
       quietarm learn next.json run2.csv run3.csv --tip tool_mm --output third.json
       quietarm learn plan.json run.csv --angle axis_mm --torque force_N --output next.json
+      quietarm learn moves.zarr run1.csv run2.csv --move target=400mm,duration=800ms \\
+          --move target=600mm,duration=900ms --tip tool_mm --angle axis_mm --output learned.zarr
     """  # noqa: D301  # \b is click's: do not rewrap
     _refuse_the_plan_itself(given)
+    if given.plan.is_dir():
+        _learn_set(given)
+        return
+    given.refuse({"moves"}, "is for a dataset of moves")
+    if datasets := [path for path in given.output if ending_of(path) == DATASET]:
+        raise ValueError(
+            f"{datasets[0]} is a dataset of moves, and {given.plan} a plan; give next.json, or "
+            "learn from a dataset of quietarm sweep"
+        )
     plan = Plan.load(given.plan)
     known = _known_machine(given.machine, plan)
     read = read_recordings(given, given.files, plan.task.plant)
@@ -75,6 +99,42 @@ def learn(given: Given) -> None:
         learning_rows(plan, learned),
         *learned.notes,
         *notes_in_words(read),
+    )
+
+
+def _learn_set(given: Given) -> None:
+    """Correct all moves of a dataset by recordings of some."""
+    from quietarm.studies.sweep.learn_set import learn_set
+    from quietarm.studies.sweep.library import MoveLibrary
+
+    given.refuse({"machine", "dearer"}, "is for one plan, and this is a dataset")
+    if len(given.moves) != len(given.files):
+        raise click.UsageError(
+            f"{len(given.files)} recordings are given, and {len(given.moves)} times --move; say of "
+            "each recording which move it is of, such as --move target=400mm,duration=800ms"
+        )
+    datasets = [path for path in given.output if ending_of(path) == DATASET]
+    if len(datasets) != len(given.output) or len(datasets) > 1:
+        raise click.UsageError("give one dataset by --output, a folder as learned.zarr")
+    library = MoveLibrary(given.plan)
+    task = library.grid.task
+    at = [parse_move(text, library.grid.names, task.plant) for text in given.moves]
+    read = read_recordings(given, given.files, task.plant)
+    with busy("learning"):
+        learned = learn_set(library, [(move, one.recording) for move, one in zip(at, read)])
+    written = None
+    for path in datasets:
+        if path.exists():
+            raise ValueError(f"{path} is there already; give another name")
+        with busy("planning all moves anew"):
+            written = learned.write(path)
+    finish(
+        [],
+        set_sentence(learned, task.plant),
+        set_rows(learned, task.plant),
+        *learned.notes,
+        *notes_in_words(read),
+        *(f"wrote {path}: {written.grid.cells} moves" for path in datasets if written),
     )
 
 

@@ -366,6 +366,66 @@ def test_another_path_of_the_same_way_is_said_to_be_one(power):
     assert "another path" in str(refused.value) or "the plan explains" in str(refused.value)
 
 
+@cache
+def another_plan(kind):
+    """The plan of another move, or another plan of the same one."""
+    if kind == "terms":
+        return qa.plan_move(TASK, qa.CycloidPolynomial(6), starts=1)
+    if kind == "model":
+        return a_plan(0.92)
+    if kind == "cycloid":
+        return qa.evaluate_coefficients(TASK, [0.0], profile=qa.CycloidPolynomial(1))
+    return qa.plan_move(replace(TASK, target=0.51), qa.CycloidPolynomial(4), starts=1)
+
+
+def as_seen(signals, kinds):
+    """A recording of some signals; a displacement is the tip beside the joint."""
+    seen = dict(signals, displacement=signals["tip"] - signals["angle"])
+    return qa.Recording(
+        seen["time"],
+        **{"tip" if kind == "displacement" else kind: seen[kind] for kind in kinds},
+        name="run",
+    )
+
+
+WRONG = [
+    ("model", ("tip",)),
+    ("terms", ("tip",)),
+    ("cycloid", ("tip",)),
+    ("way", ("tip",)),
+    ("terms", ("displacement",)),
+    ("model", ("tip", "angle")),
+    ("cycloid", ("angle", "torque")),
+    ("way", ("tip", "angle")),
+]
+
+
+@pytest.mark.slow_after(2)
+@pytest.mark.parametrize(("kind", "signals"), WRONG)
+def test_the_recording_of_another_plan_is_refused(kind, signals):
+    run = as_seen(executed(another_plan(kind), frequency=5.4), signals)
+    with pytest.raises(ValueError, match="^run: it is of another move: .*; give the recording of"):
+        qa.learn(a_plan(), [run])
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("factor", [-1.0, 0.1, 10.0])
+def test_a_tip_that_goes_another_way_or_in_another_unit_is_refused(factor):
+    signals = executed(a_plan(), frequency=5.4)
+    run = as_seen(dict(signals, tip=factor * signals["tip"]), ["tip"])
+    with pytest.raises(ValueError, match="^run: it is of another move: "):
+        qa.learn(a_plan(), [run])
+
+
+@pytest.mark.slow
+def test_a_still_plan_is_kept_where_no_tip_is_seen():
+    plan = a_plan()
+    learned = qa.learn(plan, [recording(plan, "angle", "torque", frequency=5.005, lag=0.004)])
+    assert learned.is_done
+    assert learned.plan.coefficients == plan.coefficients
+    assert learned.left <= learned.floor
+
+
 def test_a_torque_alone_is_refused():
     with pytest.raises(ValueError, match="a torque alone does not tell how the tip swings"):
         qa.learn(a_plan(), [recording(a_plan(), "torque")])

@@ -129,3 +129,53 @@ def test_the_file_of_another_machine_is_not_written_over(refused, folder):
     assert "is a machine of flexible-beam" in refused(f"{LINE} --machine beam.json")
     (folder / "other.json").write_text("{}")
     assert "other.json is not a machine" in refused(f"{LINE} --machine other.json")
+
+
+@pytest.fixture
+def dataset(folder):
+    """A dataset of four moves, and recordings of two on an axis that swings at 5.4 Hz."""
+    from quietarm.studies.sweep import MoveLibrary, sweep
+
+    axes = {"target": [0.4, 0.5], "duration": [0.7, 0.8]}
+    sweep(TASK, qa.CycloidPolynomial(3), axes=axes, path="moves.zarr")
+    library = MoveLibrary("moves.zarr")
+    actual = LinearAxis(omega1=2 * np.pi * 5.4, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
+    for name, target, duration in (("a", 0.4, 0.7), ("b", 0.5, 0.8)):
+        move = library.plan(target=target, duration=duration)
+        task = qa.PointToPoint(actual, target=target, duration=duration)
+        moved = qa.evaluate_coefficients(task, move.coefficients, profile=move.profile)
+        time = np.arange(0, 1.8, 0.002)
+        run = moved.sampled(time)
+        axis = 1e3 * run.joint[:, 0]
+        table = np.c_[time, axis + 1e3 * run.tips[:, 0], axis]
+        header = "time_s,tool_mm,axis_mm"
+        np.savetxt(f"{name}.csv", table, "%.6g", delimiter=",", header=header, comments="")
+    return folder
+
+
+MOVES = "--move target=400mm,duration=700ms --move target=0.5,duration=0.8"
+COLUMNS = "--tip tool_mm --angle axis_mm"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("dataset")
+def test_recordings_of_some_moves_correct_a_dataset(done, refused):
+    out = " ".join(done(f"learn moves.zarr a.csv b.csv {MOVES} {COLUMNS} -o next.zarr").split())
+    assert re.match(
+        r"left [\d.]+ mm at most \(5\.4 Hz, model 5 Hz\); cells without a recording: [\d.]+ mm, "
+        r"at most [\d.]+ mm \(each move left out once\)",
+        out,
+    )
+    assert "wrote next.zarr: 4 moves" in out
+    assert "to a state other than rest" in " ".join(
+        done("plan --from next.zarr --target 0.4 --duration 0.8").split()
+    )
+    for line, words in (
+        (f"a.csv {COLUMNS}", "1 recordings are given, and 0 times --move"),
+        (f"a.csv --move target=0.4 {COLUMNS}", "give a value of each axis"),
+        (f"a.csv --move target=0.5,duration=0.7 {COLUMNS}", "a.csv: it is of another move"),
+        (f"a.csv {MOVES} {COLUMNS} --machine m.json", "--machine is for one plan"),
+        (f"a.csv b.csv {MOVES} {COLUMNS} -o next.zarr", "next.zarr is there already"),
+        (f"a.csv b.csv {MOVES} {COLUMNS} -o next.json", "give one dataset by --output"),
+    ):
+        assert words in refused(f"learn moves.zarr {line}")
