@@ -7,13 +7,18 @@ millisecond is a degree of a swing of 3 Hz.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.recordings.robot_recording import RobotRecording
+from quietarm.models import JointMotion, Plant
+from quietarm.models.robot import RobotOnPath
+from quietarm.models.robot.on_path.tip_way import way_of
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.plan import Plan
 
 Array = NDArray[np.float64]
@@ -44,8 +49,17 @@ class RobotStart:
     signal: str
 
 
-def find_robot_start(plan: Plan, recording: RobotRecording) -> RobotStart:
+def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> RobotStart:
     """The start of a plan's move in a recording of it.
+
+    Parameters
+    ----------
+    plan : Plan
+        That was executed.
+    recording : RobotRecording
+        Of it.
+    plant : Plant
+        The plan's, or one that swings as the recording does, by which the start is surer.
 
     Raises
     ------
@@ -62,7 +76,7 @@ def find_robot_start(plan: Plan, recording: RobotRecording) -> RobotStart:
     signal, values = recording.swinging
     if recording.positions is not None:
         signal, values = "positions", recording.positions
-    search = _Search(recording.time, values, _courses(plan, signal), duration)
+    search = _Search(recording.time, values, _courses(plan, plant, signal), duration)
     place, explained = search.best()
     if explained < _LEAST_MET[signal]:
         raise ValueError(
@@ -75,22 +89,32 @@ def find_robot_start(plan: Plan, recording: RobotRecording) -> RobotStart:
     return RobotStart(time, deviation, signal)
 
 
-def _courses(plan: Plan, signal: str) -> Array:
-    """What the signals consist of during the move (points, courses)."""
+def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
+    """What the signals consist of during the move, as a plant has it (points, courses)."""
     duration = plan.task.duration
     times = duration * np.linspace(-_BEFORE, 1, _POINTS)
     moving = times >= 0
-    sampled = plan.sampled(times[moving])
+    task = replace(plan.task.certain, plant=plant, final=None)
+    motion = JudgedMotion.of_profile(task, plan.profile, plan.coefficients)
+    sampled = motion.sample(times[moving])
+    sample = sampled.sample
     if signal == "positions":
-        courses = np.stack([joint.angle for joint in sampled.sample.joints], axis=1)
+        courses = [joint.angle for joint in sample.joints]
+    elif signal == "torques":
+        courses = [*sample.torques, *sample.W, *sample.ddW]
     else:
-        motion = sampled.motion
-        swings = [*sampled.sample.W, *sampled.sample.ddW]
-        courses = np.stack(
-            [motion.angle, motion.speed, motion.speed**2, motion.acceleration, *swings], axis=1
-        )
-    before = np.repeat(courses[:1], np.count_nonzero(~moving), axis=0)
-    return np.concatenate([before, courses])
+        courses = [*_felt(plant, times[moving], sampled.motion), *sample.W, *sample.ddW]
+    whole = np.stack(courses, axis=1)
+    before = np.repeat(whole[:1], np.count_nonzero(~moving), axis=0)
+    return np.concatenate([before, whole])
+
+
+def _felt(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
+    """What an accelerometer at a tip that does not swing feels; of a robot along its path."""
+    if not isinstance(plant, RobotOnPath):
+        return [motion.speed**2, motion.acceleration]
+    way = way_of(plant.robot, plant.path, plant.stiffness, plant.payload)
+    return [*way.felt(time, np.asarray(motion.angle), np.asarray(plant.robot.gravity)).T]
 
 
 class _Search:

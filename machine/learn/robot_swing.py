@@ -33,9 +33,9 @@ LEAST_PERIODS = 2.0
 _PERIODS = 6.0
 _FEW_PERIODS = 3.0
 """Those that are read where the frequency depends on the amplitude."""
-_ARM = ((5.0, 6.0, 7.0), (0.1, 0.2, 0.35))
+_ARM = ((5.0, 6.0, 7.0, 10.0, 14.0), (0.03, 0.1, 0.2, 0.35))
 """Frequencies [Hz] and dampings from which the fit of the arm's own ring begins."""
-_ARM_BOUNDS = ((3.5, 0.08), (12.0, 0.5))
+_ARM_BOUNDS = ((3.5, 0.01), (25.0, 0.5))
 _FAR = 0.5
 """Share by which the robot's frequencies may be off the plan's."""
 _USUAL = 0.15

@@ -74,20 +74,31 @@ def robot_evidence(
     if delay is not None:
         delay = not_negative("delay", delay, "s")
     checked = _checked(plan, recordings)
-    plant, place = plan.task.plant, plan.task.target
-    read = list[ReadRobotMove]()
-    for recording in checked:
-        modes = SeenModes(plant, place, recording.swinging[0])
-        start = find_robot_start(plan, recording)
-        arrival = start.time + plan.task.duration
-        check_length(recording, arrival, modes)
-        late = (delay or 0.0) if start.signal == "positions" else 0.0
-        after = read_robot_swing(recording, arrival, modes, late, start.deviation)
-        read.append(ReadRobotMove(recording, start.time, after, _doubt(recording, start, delay)))
-    history = history_with(plan, [one.after.measured for one in read])
+    plant = plan.task.plant
+    read = [_read(plan, plant, recording, delay) for recording in checked]
+    evidence = _evidence(plan, read)
+    if evidence.changed:  # once more: springs that are right tell the start and the swing better
+        read = [_read(plan, evidence.plant, recording, delay) for recording in checked]
+        evidence = _evidence(plan, read)
     notes = [note for recording in checked for note in recording.notes]
-    evidence = RobotEvidence(plan, history, read)
     return evidence, read, [*notes, *evidence.remarks]
+
+
+def _evidence(plan: Plan, read: Sequence[ReadRobotMove]) -> RobotEvidence:
+    return RobotEvidence(plan, history_with(plan, [one.after.measured for one in read]))
+
+
+def _read(
+    plan: Plan, plant: Plant, recording: RobotRecording, delay: float | None
+) -> ReadRobotMove:
+    """The start and the swing of one recording, by the modes of a plant."""
+    modes = SeenModes(plant, plan.task.target, recording.swinging[0])
+    start = find_robot_start(plan, recording, plant)
+    arrival = start.time + plan.task.duration
+    check_length(recording, arrival, modes)
+    late = (delay or 0.0) if start.signal == "positions" else 0.0
+    after = read_robot_swing(recording, arrival, modes, late, start.deviation)
+    return ReadRobotMove(recording, start.time, after, _doubt(recording, start, delay))
 
 
 def refuse_delay(delay: float | None) -> None:
@@ -147,11 +158,9 @@ class RobotEvidence(Evidence):
         That was executed last.
     history : MoveHistory
         All moves, the last one with it.
-    read : sequence of ReadRobotMove
-        What was read of the last one.
     """
 
-    def __init__(self, plan: Plan, history: MoveHistory, read: Sequence[ReadRobotMove]) -> None:
+    def __init__(self, plan: Plan, history: MoveHistory) -> None:
         self._before = TipModes(plan.task.plant, plan.task.target)
         super().__init__(plan, history, ())
 
