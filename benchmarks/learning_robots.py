@@ -33,7 +33,6 @@ from robots import (
     PANDA_START,
     PEDESTAL,
     STEEL_BAR,
-    UR5_JOINTS,
     panda_with_bar,
     straight,
     ur5_with_bar,

@@ -118,6 +118,11 @@ class Evidence:
 
     # The model
 
+    @property
+    def frequencies(self) -> dict[str, tuple[float, float]]:
+        """Of modes that are no parameters [Hz]: the plan's, and those of the moves; here none."""
+        return {}
+
     @cached_property
     def _parts(self) -> list[Part]:
         """What each recording of the history tells of the plant's parameters."""

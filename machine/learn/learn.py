@@ -109,6 +109,7 @@ def learn(
         machine=evidence.machine(),
         by_joint=evidence.by_joint,
         notes=(*notes, *evidence.doubts),
+        modes=evidence.frequencies,
     )
 
 

@@ -42,6 +42,8 @@ _USUAL = 0.15
 """The same, usually (a logarithm)."""
 _CLOSE = 0.06
 """Share of a frequency, within which some periods do not tell two modes apart."""
+_SEEN = 2.5
+"""Deviations, below which a swing is taken as none: torques hardly show some modes."""
 _STANDS_OUT = 5.0
 """Deviations, from which on a mode tells its frequency."""
 
@@ -108,7 +110,8 @@ def read_robot_swing(
         Standard deviation of the arrival's time [s].
     """
     fit, notes = _best_fit(_Window(recording, arrival, modes))
-    amplitudes = fit.at_arrival * np.exp(fit.by_mode * late)
+    seen = np.abs(fit.at_arrival) > _SEEN * fit.deviations
+    amplitudes = np.where(seen, fit.at_arrival * np.exp(fit.by_mode * late), 0.0)
     # a wrong start turns the phase
     deviations = np.hypot(fit.deviations, np.abs(amplitudes * fit.by_mode) * unsure / 2**0.5)
     swings = tuple(ArrivalSwing.of(complex(a), float(d)) for a, d in zip(amplitudes, deviations))

@@ -170,7 +170,9 @@ class RobotEvidence(Evidence):
     # The springs
 
     @cached_property
-    def frequencies(self) -> dict[str, tuple[float, float]]:
+    def frequencies(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self,
+    ) -> dict[str, tuple[float, float]]:
         """Of every mode that moves told [Hz]: the plan's, and the mean of the moves'."""
         told = dict[str, tuple[float, float]]()
         for number, model in enumerate(self._before.frequencies):
@@ -256,6 +258,20 @@ class RobotEvidence(Evidence):
     def seen_share(self, plant: Plant) -> float | None:
         """None: how far the tip swings during the move is not seen."""
         return None
+
+    @cached_property
+    def step(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Share of the correction that is worth making, by the modes whose swing is seen."""
+        left = np.abs(self._again)
+        single = self._of_one[-1]
+        if self._scatter is not None:
+            single = np.hypot(single, self._scatter)
+        seen = left > 2 * single
+        if not self.changed and not seen.any():
+            return 0.0
+        unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
+        power = float((left[seen] ** 2).sum())
+        return power / (power + 2 * float((unsure[seen] ** 2).sum())) if seen.any() else 1.0
 
     # Moves that differ
 

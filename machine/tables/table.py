@@ -92,7 +92,7 @@ class Table:
             return self.columns[int(name)]
         names = [column.name for column in self.columns]
         near = nearest(name, names) if names else ""
-        raise FileFormatError(f"{self.path} has no column {quoted(name)}{near}; {self._listed()}")
+        raise FileFormatError(f"{self.path} has no column {quoted(name)}{near}; {self.listed()}")
 
     def first(self, quantity: str, remedy: str) -> str:
         """The first column that is called as a time, an angle or a position is.
@@ -106,10 +106,10 @@ class Table:
         if quantity == "time" and self.columns and self._first_is_time():
             return self.columns[0].name
         raise FileFormatError(
-            f"{self.path} has no column called {quantity}; {remedy}; {self._listed()}"
+            f"{self.path} has no column called {quantity}; {remedy}; {self.listed()}"
         )
 
-    def _listed(self) -> str:
+    def listed(self) -> str:
         """The columns by name, in words; a number serves as well."""
         most = 12
         names = [column.name for column in self.columns[:most]]

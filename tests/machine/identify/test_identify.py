@@ -79,6 +79,7 @@ BEFORE = {
 }
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("before", BEFORE)
 def test_samples_outside_a_part_do_not_change_its_fit(before):
     t = np.arange(0, 6, 0.005)
