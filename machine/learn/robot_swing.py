@@ -40,6 +40,8 @@ _FAR = 0.5
 """Share by which the robot's frequencies may be off the plan's."""
 _USUAL = 0.15
 """The same, usually (a logarithm)."""
+_MOST_DAMPING = 0.05
+"""Of a mode of what is carried."""
 _CLOSE = 0.06
 """Share of a frequency, within which some periods do not tell two modes apart."""
 _SEEN = 2.5
@@ -174,7 +176,7 @@ def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
     best = plain
     notes = list[str]()
     ringing = _Fit(replace(window, with_arm=True))
-    if ringing.left < clearly * plain.left:
+    if ringing.left < clearly * plain.left and ringing.is_arm:
         later = _later(window)
         best = ringing
         arm = f"the arm itself rings after arrival, at {ringing.arm[0]:.2g} Hz with a damping of "
@@ -186,7 +188,7 @@ def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
             notes.append(f"{arm}: it is fitted beside the swing")
     short = _shorter(best)
     if short is not None:
-        longer, few = best.slowest, short.slowest
+        longer, few = best.clearest, short.clearest
         notes.append(
             f"frequency and damping depend on the amplitude, {few[0]:.4g} Hz and {few[1]:.2g} in "
             f"the first {_FEW_PERIODS:g} periods, {longer[0]:.4g} Hz and {longer[1]:.2g} in "
@@ -211,7 +213,7 @@ def _shorter(fit: _Fit) -> _Fit | None:
     if window.lasts < 1.2 * _FEW_PERIODS:
         return None
     short = _Fit(replace(window, periods=_FEW_PERIODS))
-    differs = abs(np.log(short.slowest[0] / fit.slowest[0]))
+    differs = abs(np.log(short.clearest[0] / fit.clearest[0]))
     of_both = float(np.hypot(short.rate_deviations.min(), fit.rate_deviations.min()))
     if short.left < clearly * fit.left and differs > apart * of_both:
         return short
@@ -229,6 +231,7 @@ class _Fit:
         self._model = np.array([[np.log(abs(v)), np.log(_damping(v))] for v in of_modes])
         self._size = np.maximum(noise_of(self._values), 1e-3 * self._values.std() + 1e-300)
         x = self._coarse()
+        self._coarse_rates = x[0 : 2 * len(self._model) : 2]
         for _ in range(2):
             x = self._fitted(x)
             self._size = self._deviation_of(x)
@@ -249,10 +252,18 @@ class _Fit:
         return float(abs(value)) / tau, _damping(value)
 
     @property
-    def slowest(self) -> tuple[float, float]:
-        """Frequency [Hz] and damping of the cluster that swings most at arrival."""
-        loudest = int(np.abs(self.at_arrival).argmax())
-        value = self.by_mode[loudest]
+    def is_arm(self) -> bool:
+        """Whether that is another ring than the modes': damped heavily, or far from all of them."""
+        heavily = 0.08
+        frequency, damping = self.arm
+        apart = np.abs(np.log(frequency * tau / np.abs(self.by_mode))).min()
+        return bool(damping > heavily or apart > _USUAL)
+
+    @property
+    def clearest(self) -> tuple[float, float]:
+        """Frequency [Hz] and damping of the mode that stands out most."""
+        clearest = int((np.abs(self.at_arrival) / self.deviations).argmax())
+        value = self.by_mode[clearest]
         return float(abs(value)) / tau, _damping(value)
 
     @cached_property
@@ -349,10 +360,10 @@ class _Fit:
         """Frequencies and dampings that meet the signals best."""
         from scipy.optimize import least_squares  # not at the top: it takes long to load
 
-        lower = np.array([[np.log(0.4), np.log(1e-4)]] * len(self._model)).ravel()
-        upper = np.array([[np.log(2.5), np.log(0.1)]] * len(self._model)).ravel()
-        rates = np.stack([self._model[:, 0], np.zeros(len(self._model))], axis=1).ravel()
-        lower, upper = lower + rates, upper + rates
+        rates = np.stack([self._coarse_rates, np.zeros(len(self._model))], axis=1).ravel()
+        # a mode that does not swing is not to follow what another does
+        lower = rates + np.array([[-_USUAL, np.log(1e-4)]] * len(self._model)).ravel()
+        upper = rates + np.array([[_USUAL, np.log(_MOST_DAMPING)]] * len(self._model)).ravel()
         if self.window.with_arm:
             (slow, light), (fast, heavy) = _ARM_BOUNDS
             lower = np.append(lower, [np.log(tau * slow), np.log(light)])

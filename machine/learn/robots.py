@@ -228,28 +228,34 @@ class RobotEvidence(Evidence):
         return (Estimate(STIFFNESS, *((1 + f) ** 2 for f in (share, low, high))),)
 
     @cached_property
-    def changed(self) -> dict[str, tuple[float, float]]:
-        """The stiffness of the plan's springs, 1, and how many times that the robot has."""
+    def _as_it_swings(self) -> Plant | None:
+        """The robot with springs as its frequencies tell; None where these are the plan's."""
         if not self.estimates:
-            return {}
+            return None
         (estimate,) = self.estimates
         share, _ = self._faster
         if estimate.low <= 1 <= estimate.high or abs(share) < _LEAST_CHANGE:
-            return {}
-        return {STIFFNESS: (1.0, estimate.value)} if self._explains_swing(share) else {}
+            return None
+        return _with_frequency(self._plan, 1 + share)
 
-    def _explains_swing(self, share: float) -> bool:
-        """Whether less of the last move is left to explain with other springs than without."""
-        plants = (self._plan.task.plant, _with_frequency(self._plan, 1 + share))
+    @cached_property
+    def changed(self) -> dict[str, tuple[float, float]]:
+        """The stiffness of the plan's springs, 1, and how many times that the robot has.
+
+        Where less of the last move is left to explain with it than without.
+        """
+        other = self._as_it_swings
+        if other is None:
+            return {}
+        plants = (self._plan.task.plant, other)
         rest = [float(np.abs(self._left[-1] - self._told_by(plant)[-1]).sum()) for plant in plants]
-        return rest[1] < rest[0]
+        return {STIFFNESS: (1.0, self.estimates[0].value)} if rest[1] < rest[0] else {}
 
     @cached_property
     def plant(self) -> Plant:  # pyright: ignore[reportIncompatibleVariableOverride]
         """The robot with the springs that it has."""
-        if not self.changed:
-            return self._plan.task.plant
-        return _with_frequency(self._plan, 1 + self._faster[0])
+        other = self._as_it_swings
+        return other if self.changed and other is not None else self._plan.task.plant
 
     def machine(self) -> Identified:
         """The robot with what was learned."""
@@ -331,7 +337,8 @@ class RobotEvidence(Evidence):
     @property
     def _turned(self) -> str:
         """That torques swing against the plant's; empty where they do not."""
-        told, left = self._told[-1], self._left[-1]
+        told = self._told_by(self._as_it_swings or self.plant)[-1]
+        left = self._left[-1]
         product = complex((told.conj() * left).sum())
         power = float((np.abs(told) * np.abs(left)).sum())
         large = 0.3  # share of what the plain move leaves, from which on a swing has a sign

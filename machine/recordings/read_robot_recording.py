@@ -69,7 +69,7 @@ def read_robot_recording(
         )
     signals = {
         signal: np.column_stack([
-            table.find(heading).values * _factor(table, heading, _OPTIONS[signal], columns)
+            table.find(heading).values * _factor(table, heading, _OPTIONS[signal], columns, plant)
             for heading in found
         ])
         for signal, found in headings.items()
@@ -101,9 +101,14 @@ def _recording(
         raise FileFormatError(str(error)) from None
 
 
-def _factor(table: Table, heading: str, quantity: str, columns: Columns) -> float:
-    """What one of a column is in SI units."""
+def _factor(
+    table: Table, heading: str, quantity: str, columns: Columns, plant: Plant | None = None
+) -> float:
+    """What one of a column is in SI units; the name of a joint at its end is no unit."""
     unit = columns.units.get(quantity, "")
+    ends_in_joint = plant is not None and heading.strip().endswith(plant.joint_names)
+    if ends_in_joint and not unit and quantity not in columns.scales:
+        return 1.0
     return table.factor(heading, quantity, unit, columns.scales.get(quantity), option=quantity)
 
 
@@ -114,9 +119,10 @@ def _headings(table: Table, signal: str, given: Sequence[str], plant: Plant) -> 
     """
     joints = plant.joint_names
     names = {_plain(column.name): column.name for column in table.columns}
+    names |= {column.name.strip().lower(): column.name for column in table.columns}
     for front in given or _CALLED[signal]:
         for pattern in _patterns(front, joints):
-            found = [names[_plain(one)] for one in pattern if _plain(one) in names]
+            found = [names[one.lower()] for one in pattern if one.lower() in names]
             if len(found) == len(joints):
                 return found
     if given:
@@ -125,7 +131,7 @@ def _headings(table: Table, signal: str, given: Sequence[str], plant: Plant) -> 
             f"they may be called {quoted(f'{joints[0]}_{given[0]}')} or "
             f"{quoted(f'{given[0]}[0]')}; {table.listed()}"
         )
-    alone = [names[_plain(joint)] for joint in joints if _plain(joint) in names]
+    alone = [names[joint.lower()] for joint in joints if joint.lower() in names]
     return alone if signal == "torques" and len(alone) == len(joints) else []
 
 
