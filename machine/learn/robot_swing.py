@@ -2,9 +2,9 @@
 
 All signals are fitted with the same frequencies and dampings, each with amplitudes of its own; the
 plant's modes then say which swing of the tip has these. For a while after arrival the arm itself
-rings, at 5 to 7 Hz with a damping of 0.1 to 0.35: it is fitted as one more mode, or left out by a
-later window, whichever leaves the swing surer. Where frequency and damping depend on the amplitude,
-the first periods alone are read.
+rings, at 5 to 7 Hz with a damping of 0.1 to 0.35, and so may a base or a gear: that is fitted as
+further modes, or left out by a later window, whichever leaves the swing surer. Where frequency and
+damping depend on the amplitude, the first periods alone are read.
 """
 
 from __future__ import annotations
@@ -33,9 +33,11 @@ LEAST_PERIODS = 2.0
 _PERIODS = 6.0
 _FEW_PERIODS = 3.0
 """Those that are read where the frequency depends on the amplitude."""
-_ARM = ((5.0, 6.0, 7.0, 10.0, 14.0), (0.03, 0.1, 0.2, 0.35))
-"""Frequencies [Hz] and dampings from which the fit of the arm's own ring begins."""
-_ARM_BOUNDS = ((3.5, 0.01), (25.0, 0.5))
+_RINGS = 3
+"""How many rings beside the modes are told: of the arm, a base in two directions, a gear."""
+_RING = ((5.0, 6.0, 7.0, 8.5, 10.0, 12.0, 15.0, 19.0), (0.01, 0.03, 0.1, 0.2, 0.35))
+"""Frequencies [Hz] and dampings from which the fit of such a ring begins."""
+_RING_BOUNDS = ((3.5, 0.002), (25.0, 0.5))
 _FAR = 0.5
 """Share by which the robot's frequencies may be off the plan's."""
 _USUAL = 0.15
@@ -131,7 +133,7 @@ def read_robot_swing(
 
 @dataclass(frozen=True, eq=False)
 class _Window:
-    """What is read of a recording after arrival: from when, how long, with the arm's ring or not.
+    """What is read of a recording after arrival: from when, and how long.
 
     Times are since arrival [s]; periods are those of the slowest mode.
     """
@@ -141,7 +143,6 @@ class _Window:
     modes: SeenModes
     begin: float = SETTLES
     periods: float = _PERIODS
-    with_arm: bool = False
 
     @cached_property
     def rows(self) -> slice:
@@ -171,21 +172,17 @@ class _Window:
 
 def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
     """The fit that makes the swing at arrival surest, and how it reads it."""
-    clearly = 0.7  # share of what is left without the arm's ring
-    plain = _Fit(window)
-    best = plain
+    best = _with_rings(window)
     notes = list[str]()
-    ringing = _Fit(replace(window, with_arm=True))
-    if ringing.left < clearly * plain.left and ringing.is_arm:
+    if best.rings:
+        rings = " and ".join(f"{f:.2g} Hz with a damping of {z:.2g}" for f, z in best.rings)
+        words = f"the arm itself rings after arrival, at {rings}: "
         later = _later(window)
-        best = ringing
-        arm = f"the arm itself rings after arrival, at {ringing.arm[0]:.2g} Hz with a damping of "
-        arm = f"{arm}{ringing.arm[1]:.2g}"
-        if later is not None and later.deviations.sum() < ringing.deviations.sum():
+        if later is not None and later.deviations.sum() < best.deviations.sum():
             best = later
-            notes.append(f"{arm}: the swing is read from {LATER:g} s after arrival on")
+            notes.append(f"{words}the swing is read from {LATER:g} s after arrival on")
         else:
-            notes.append(f"{arm}: it is fitted beside the swing")
+            notes.append(f"{words}that is fitted beside the swing")
     short = _shorter(best)
     if short is not None:
         longer, few = best.clearest, short.clearest
@@ -196,6 +193,17 @@ def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
         )
         best = short
     return best, notes
+
+
+def _with_rings(window: _Window) -> _Fit:
+    """The fit of the modes, and of as many rings beside them as clearly help."""
+    clearly = 0.7  # share of what is left without one more ring
+    best = more = _Fit(window)
+    for _ in range(_RINGS):  # of two that beat, one alone hardly helps
+        more = _Fit(window, more.with_ring())
+        if more.left < clearly * best.left and more.are_apart:
+            best = more
+    return best
 
 
 def _later(window: _Window) -> _Fit | None:
@@ -212,7 +220,7 @@ def _shorter(fit: _Fit) -> _Fit | None:
     window = fit.window
     if window.lasts < 1.2 * _FEW_PERIODS:
         return None
-    short = _Fit(replace(window, periods=_FEW_PERIODS))
+    short = _Fit(replace(window, periods=_FEW_PERIODS), fit.found if fit.rings else None)
     differs = abs(np.log(short.clearest[0] / fit.clearest[0]))
     of_both = float(np.hypot(short.rate_deviations.min(), fit.rate_deviations.min()))
     if short.left < clearly * fit.left and differs > apart * of_both:
@@ -221,43 +229,59 @@ def _shorter(fit: _Fit) -> _Fit | None:
 
 
 class _Fit:
-    """The swings of a window: frequencies and dampings of all signals, amplitudes of each."""
+    """The swings of a window: frequencies and dampings of all signals, amplitudes of each.
 
-    def __init__(self, window: _Window) -> None:
+    From where it begins, logarithms of them, those of rings after those of the modes; by default
+    the modes alone.
+    """
+
+    def __init__(self, window: _Window, start: Array | None = None) -> None:
         self.window = window
         self._time, self._values = window.signals
         self._clusters = _clusters(window.modes.frequencies)
         of_modes = [window.modes.values[modes[0]] for modes in self._clusters]
         self._model = np.array([[np.log(abs(v)), np.log(_damping(v))] for v in of_modes])
         self._size = np.maximum(noise_of(self._values), 1e-3 * self._values.std() + 1e-300)
-        x = self._coarse()
+        x = self._coarse() if start is None else start
+        self._ring_count = len(x) // 2 - len(self._model)
         self._coarse_rates = x[0 : 2 * len(self._model) : 2]
         for _ in range(2):
             x = self._fitted(x)
             self._size = self._deviation_of(x)
-        self._x = x
+        self.found = x
 
     # What was found
 
     @cached_property
     def left(self) -> float:
         """Mean power that is left, of all signals."""
-        residual = self._solved(self._x)[1]
+        residual = self._solved(self.found)[1]
         return float((residual**2).mean())
 
     @property
-    def arm(self) -> tuple[float, float]:
-        """Frequency [Hz] and damping of the arm's own ring."""
-        value = self._eigenvalues(self._x)[-1]
-        return float(abs(value)) / tau, _damping(value)
+    def rings(self) -> list[tuple[float, float]]:
+        """Frequency [Hz] and damping of what rings beside the modes."""
+        values = self._eigenvalues(self.found)[len(self._model) :]
+        return [(float(abs(value)) / tau, _damping(value)) for value in values]
 
     @property
-    def is_arm(self) -> bool:
-        """Whether that is another ring than the modes': damped heavily, or far from all of them."""
+    def are_apart(self) -> bool:
+        """Whether all that rings is not a mode's swing: damped heavily, or far from each."""
         heavily = 0.08
-        frequency, damping = self.arm
-        apart = np.abs(np.log(frequency * tau / np.abs(self.by_mode))).min()
-        return bool(damping > heavily or apart > _USUAL)
+        modes = np.abs(self.by_mode) / tau
+        return all(
+            damping > heavily or np.abs(np.log(frequency / modes)).min() > _USUAL
+            for frequency, damping in self.rings
+        )
+
+    def with_ring(self) -> Array:
+        """Where a fit with one more ring begins."""
+        starts = [
+            np.append(self.found, [np.log(tau * hertz), np.log(damping)])
+            for hertz in _RING[0]
+            for damping in _RING[1]
+        ]
+        return min(starts, key=lambda x: float(((self._solved(x)[1] / self._size) ** 2).sum()))
 
     @property
     def clearest(self) -> tuple[float, float]:
@@ -269,32 +293,32 @@ class _Fit:
     @cached_property
     def by_mode(self) -> ComplexArray:
         """Eigenvalue of every mode: modes that are not told apart have the same."""
-        return self._spread(self._eigenvalues(self._x))
+        return self._spread(self._eigenvalues(self.found))
 
     @cached_property
     def at_arrival(self) -> ComplexArray:
         """Swing of the tip by every mode at arrival."""
-        return self._projected(self._x)[0]
+        return self._projected(self.found)[0]
 
     @cached_property
     def other(self) -> float:
         """What of the swing the modes' shapes do not meet, as a displacement of the tip."""
-        return self._projected(self._x)[1]
+        return self._projected(self.found)[1]
 
     @cached_property
     def deviations(self) -> Array:
         """Standard deviation of the two parts of each swing at arrival."""
         steps = 1e-4
-        of_rates = np.zeros((len(self.at_arrival), len(self._x)), complex)
-        for k, unit in enumerate(np.eye(len(self._x))):
-            ahead, _ = self._projected(self._x + steps * unit)
+        of_rates = np.zeros((len(self.at_arrival), len(self.found)), complex)
+        for k, unit in enumerate(np.eye(len(self.found))):
+            ahead, _ = self._projected(self.found + steps * unit)
             of_rates[:, k] = (ahead - self.at_arrival) / steps
         by_rates = np.einsum("ij,jk,ik->i", of_rates, self._covariance, of_rates.conj()).real / 2
-        design = self._design(self._eigenvalues(self._x))
+        design = self._design(self._eigenvalues(self.found))
         inverse: Any = np.linalg.pinv(design.T @ design, hermitian=True)
         by_noise = np.zeros(len(self.at_arrival))
         since = float(self._time[0])
-        values = self._eigenvalues(self._x)
+        values = self._eigenvalues(self.found)
         for c, modes in enumerate(self._clusters):
             rows = self.window.modes.rows_at(self._spread(values))[:, modes]
             power = np.linalg.pinv(rows / self._size[:, None])
@@ -323,14 +347,7 @@ class _Fit:
             cost = self._cost_by_shapes(x) * (1 + (factor / _USUAL) ** 2 / 50)
             if cost < best[0]:
                 best = (cost, x)
-        if not self.window.with_arm:
-            return best[1]
-        starts = [
-            np.append(best[1], [np.log(tau * hertz), np.log(damping)])
-            for hertz in _ARM[0]
-            for damping in _ARM[1]
-        ]
-        return min(starts, key=lambda x: float((self._solved(x)[1] ** 2).sum()))
+        return best[1]
 
     def _cost_by_shapes(self, x: Array) -> float:
         """What is left where the signals swing as the modes' shapes have it."""
@@ -364,10 +381,9 @@ class _Fit:
         # a mode that does not swing is not to follow what another does
         lower = rates + np.array([[-_USUAL, np.log(1e-4)]] * len(self._model)).ravel()
         upper = rates + np.array([[_USUAL, np.log(_MOST_DAMPING)]] * len(self._model)).ravel()
-        if self.window.with_arm:
-            (slow, light), (fast, heavy) = _ARM_BOUNDS
-            lower = np.append(lower, [np.log(tau * slow), np.log(light)])
-            upper = np.append(upper, [np.log(tau * fast), np.log(heavy)])
+        (slow, light), (fast, heavy) = _RING_BOUNDS
+        lower = np.append(lower, [np.log(tau * slow), np.log(light)] * self._ring_count)
+        upper = np.append(upper, [np.log(tau * fast), np.log(heavy)] * self._ring_count)
         start = np.clip(x, lower + 1e-6, upper - 1e-6)
         anchor = start.copy()
         anchor[1 : 2 * len(self._model) : 2] = self._model[:, 1]
@@ -385,8 +401,8 @@ class _Fit:
     @property
     def _usual(self) -> Array:
         """Standard deviations of what is sought before anything is recorded."""
-        usual = [_USUAL, 1.0] * len(self._model)
-        return np.array([*usual, 0.3, 0.7] if self.window.with_arm else usual)
+        of_modes, of_rings = [_USUAL, 1.0], [0.3, 0.7]
+        return np.array(of_modes * len(self._model) + of_rings * self._ring_count)
 
     @property
     def _alike(self) -> float:
@@ -401,7 +417,7 @@ class _Fit:
         return np.maximum(np.sqrt((left**2).sum(axis=0) / freedom), 1e-6 * self._size)
 
     def _eigenvalues(self, x: Array) -> ComplexArray:
-        """Of every cluster, and of the arm last."""
+        """Of every cluster, and then of what rings beside them."""
         rates, dampings = np.exp(x[0::2]), np.exp(x[1::2])
         values: ComplexArray = rates * (-dampings + 1j * np.sqrt(1 - dampings**2))
         return values

@@ -20,6 +20,8 @@ from quietarm.machine.learn.evidence import Evidence, history_with
 from quietarm.machine.learn.joint_torques import SeenModes
 from quietarm.machine.learn.robot_start import RobotStart, find_robot_start
 from quietarm.machine.learn.robot_swing import (
+    LEAST_PERIODS,
+    SETTLES,
     RobotSwing,
     check_length,
     mode_name,
@@ -92,6 +94,8 @@ def _read(
     plan: Plan, plant: Plant, recording: RobotRecording, delay: float | None
 ) -> ReadRobotMove:
     """The start and the swing of one recording, by the modes of a plant."""
+    if recording.positions is None and plant == plan.task.plant:
+        plant = _as_it_ends(plan, recording)  # by springs that are wrong the start is, too
     modes = SeenModes(plant, plan.task.target, recording.swinging[0])
     start = find_robot_start(plan, recording, plant)
     arrival = start.time + plan.task.duration
@@ -99,6 +103,25 @@ def _read(
     late = (delay or 0.0) if start.signal == "positions" else 0.0
     after = read_robot_swing(recording, arrival, modes, late, start.deviation)
     return ReadRobotMove(recording, start.time, after, _doubt(recording, start, delay))
+
+
+def _as_it_ends(plan: Plan, recording: RobotRecording) -> Plant:
+    """The robot with the frequency by which a recording ends, wherever its move begins."""
+    plant = plan.task.plant
+    modes = SeenModes(plant, plan.task.target, recording.swinging[0])
+    at_least = SETTLES + LEAST_PERIODS / float(modes.frequencies[0])
+    begin = float(recording.time[-1]) - at_least
+    if begin <= recording.time[0] or not isinstance(plant, RobotOnPath):
+        return plant
+    told = read_robot_swing(recording, begin, modes, 0.0, 0.0).measured
+    shares = [
+        told.values[mode_name(k)] / frequency
+        for k, frequency in enumerate(modes.frequencies.tolist())
+        if mode_name(k) in told.values
+    ]
+    if not shares or abs(np.mean(shares) - 1) < _LEAST_CHANGE:
+        return plant
+    return _with_frequency(plan, float(np.mean(shares)))
 
 
 def refuse_delay(delay: float | None) -> None:
