@@ -25,7 +25,7 @@ from quietarm.machine.identify.swings.frequencies import doubt_units, find_frequ
 from quietarm.machine.identify.swings.recording_parts import NO_SWING, fit_parts
 from quietarm.machine.identify.swings.ring_downs import moves
 from quietarm.machine.recordings.mending import without_glitches
-from quietarm.machine.recordings.recording import Recording, checked_recordings
+from quietarm.machine.recordings.recording import LEAST_ROWS, Recording, checked_recordings
 from quietarm.models import Plant
 from quietarm.models.drive import Recorded
 from quietarm.ocp.checks import finite, several, takes
@@ -82,7 +82,9 @@ def identify(
     kinds = _check(recordings, plant)
     names = _sought(plant, free, kinds)
     parts = _checked_parts(parts)
-    recordings, doubts = without_glitches(recordings)
+    cut, left_out = _cut_to(parts, recordings)
+    recordings, doubts = without_glitches(cut)
+    doubts = [*dict.fromkeys(doubts)]  # those of one recording stand in each of its parts
     frequencies = find_frequencies(recordings)
     fitters = [
         PartFitter(plant, names, recording, frequency)
@@ -97,18 +99,18 @@ def identify(
             "parts out, or seek frequencies and dampings alone, without a torque"
         )
     fitted = list[Part]()
-    left_out = dict[str, str]()
     moving = list[PartFitter]()
     for fitter in fitters:
         ring_downs = list[Part]()
         why = NO_SWING
         if at_rest:
-            ring_downs, why = fit_parts(fitter, parts)
+            ring_downs, why = fit_parts(fitter, by_hand=bool(parts))
         fitted += ring_downs
         if not ring_downs and fitter.frequency and (moves(fitter.recording) or not at_rest):
             moving.append(fitter)
         elif not ring_downs:
             left_out[fitter.recording.name] = why
+    left_out = {name: why for name, why in left_out.items() if not _is_read(name, fitted)}
     if not fitted and not moving:
         if not any(frequencies):
             raise ValueError(
@@ -234,6 +236,43 @@ def _checked_parts(parts: Sequence[tuple[float, float]]) -> list[tuple[float, fl
             raise ValueError(f"a part is {part!r}; give its begin before its end")
         checked.append((begin, end))
     return checked
+
+
+def _cut_to(
+    parts: Sequence[tuple[float, float]], recordings: Sequence[Recording]
+) -> tuple[list[Recording], dict[str, str]]:
+    """Each part of each recording as a recording of its own, and why some have none.
+
+    No sample outside a part then changes what is found in it: its swing's frequency, what its noise
+    is, and what is a glitch. Without parts these are the recordings themselves.
+    """
+    if not parts:
+        return list(recordings), {}
+    cut = list[Recording]()
+    without = dict[str, str]()
+    for recording in recordings:
+        inside = [_inside(recording, *ends) for ends in parts]
+        enough = [rows for rows in inside if rows.stop - rows.start >= LEAST_ROWS]
+        cut += [recording.part(rows) for rows in enough]
+        if not enough:
+            first, last = recording.time[[0, -1]]
+            without[recording.name] = (
+                f"no part has {LEAST_ROWS} rows of it; it lasts from {first:.6g} to {last:.6g} s"
+            )
+    if not cut:
+        raise ValueError(_by_recording(without))
+    return cut, without
+
+
+def _inside(recording: Recording, begin: float, end: float) -> slice:
+    """The rows from one time to another, and none beyond."""
+    first = int(np.searchsorted(recording.time, begin, side="left"))
+    return slice(first, int(np.searchsorted(recording.time, end, side="right")))
+
+
+def _is_read(name: str, parts: Sequence[Part]) -> bool:
+    """Whether a part is of the recording of a name."""
+    return any(part.recording == name for part in parts)
 
 
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:

@@ -81,17 +81,15 @@ def told_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> ComplexArra
 
 def evidence_of(plan: Plan, read: Sequence[ReadMove]) -> Evidence:
     """What the moves of a plan's history and recordings of the last one tell."""
-    after = [one.after for one in read]
-    return Evidence(plan, _history_with(plan, after), read)
+    return Evidence(plan, history_with(plan, [one.after.measured for one in read]), read)
 
 
-def _history_with(plan: Plan, read: Sequence[AfterMove]) -> MoveHistory:
+def history_with(plan: Plan, measured: Sequence[RecordedArrival]) -> MoveHistory:
     """The history of a plan with what was measured of it now."""
     plant = plan.task.plant
     model = {name: getattr(plant, name) for name in modal_names(plant)}
     history = plan.learned or MoveHistory(wanted=plan.task.final, model=model)
-    measured = tuple(one.measured for one in read)
-    now = ExecutedMove(plan.profile, plan.coefficients, plan.task.move, measured)
+    now = ExecutedMove(plan.profile, plan.coefficients, plan.task.move, tuple(measured))
     *before, last = [*history.moves, None] if not history.moves else history.moves
     if last is not None and _same_motion(last, now):
         now = replace(now, measured=(*last.measured, *measured))
@@ -135,6 +133,11 @@ class Evidence:
         return all(one.by_joint for one in self._read)
 
     # The model
+
+    @property
+    def frequencies(self) -> dict[str, tuple[float, float]]:
+        """Of modes that are no parameters [Hz]: the plan's, and those of the moves; here none."""
+        return {}
 
     @cached_property
     def _parts(self) -> list[Part]:

@@ -14,15 +14,17 @@ from dataclasses import replace
 from quietarm.machine.identify.identified import is_frequency
 from quietarm.machine.learn.check_columns import check_columns
 from quietarm.machine.learn.check_move import check_move
-from quietarm.machine.learn.evidence import ReadMove, evidence_of, is_by_joint
+from quietarm.machine.learn.evidence import Evidence, ReadMove, evidence_of, is_by_joint
 from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
 from quietarm.machine.learn.read_swing import check_length, read_swing
+from quietarm.machine.learn.robots import refuse_delay, robot_evidence
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, checked_recordings
+from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.solvers.solver import Solver
@@ -33,10 +35,11 @@ from quietarm.ocp.uncertainty import with_values
 @takes(plan=Plan, solver=Solver)
 def learn(
     plan: Plan,
-    recordings: Sequence[Recording],
+    recordings: Sequence[Recording] | Sequence[RobotRecording],
     *,
     dearer: float = 0.02,
     solver: Solver = Sqp(),
+    delay: float | None = None,
 ) -> Learning:
     """Learn from recordings of a plan's executed move, and plan the next one.
 
@@ -49,11 +52,13 @@ def learn(
     plan : Plan
         The plan that was executed.
     recordings : sequence of Recording
-        Of its execution, one or several.
+        Of its execution, one or several; `RobotRecording` of a robot along a path.
     dearer : float
         Share by which the next plan may take more energy than this one.
     solver : Solver
         As for `plan_move`.
+    delay : float, optional
+        Of a robot: by how much its torques were recorded late [s], as by an estimator's filter.
 
     Returns
     -------
@@ -70,12 +75,11 @@ def learn(
     """
     dearer = positive("dearer", dearer)
     check_plan(plan)
-    recordings, notes = without_glitches(checked_recordings(recordings))
-    read = [read_move(plan, recording) for recording in recordings]
-    evidence = evidence_of(plan, read)
-    if any(one.by_joint for one in read):  # once more, by the frequency that all moves tell
-        read = [one.on(evidence.told_plant, plan.task.target) for one in read]
-        evidence = evidence_of(plan, read)
+    if plan.task.plant.has_path:
+        evidence, read, notes = robot_evidence(plan, recordings, delay)
+    else:
+        refuse_delay(delay)
+        evidence, read, notes = _evidence(plan, recordings)
     history = evidence.history
     step = evidence.step
     told = evidence.told_next(step)
@@ -107,7 +111,21 @@ def learn(
         machine=evidence.machine(),
         by_joint=evidence.by_joint,
         notes=(*notes, *evidence.doubts),
+        modes=evidence.frequencies,
     )
+
+
+def _evidence(
+    plan: Plan, recordings: Sequence[Recording]
+) -> tuple[Evidence, list[ReadMove], list[str]]:
+    """What the moves of a plan of one joint tell, how they were read, and what was mended."""
+    recordings, notes = without_glitches(checked_recordings(recordings))
+    read = [read_move(plan, recording) for recording in recordings]
+    evidence = evidence_of(plan, read)
+    if any(one.by_joint for one in read):  # once more, by the frequency that all moves tell
+        read = [one.on(evidence.told_plant, plan.task.target) for one in read]
+        evidence = evidence_of(plan, read)
+    return evidence, read, notes
 
 
 def check_plan(plan: Plan) -> None:
@@ -119,10 +137,7 @@ def check_plan(plan: Plan) -> None:
             "change; learn from a plan of quietarm plan"
         )
     if plant.has_path:
-        raise ValueError(
-            f"{plant.name} moves along a path, and learn takes plants of one joint; correct its "
-            "plan by the whole equations, plan --in-full"
-        )
+        return  # its springs are scaled, whatever they are
     if not any(is_frequency(plant, name) for name in plant.measured):
         raise ValueError(
             f"{plant.name} has no parameter that is the frequency of a mode, which recordings "

@@ -46,6 +46,8 @@ class Learning:
         The plant with what was learned, for other moves.
     by_joint : bool
         Whether no tip was recorded, so that all follows from the joint and its torque.
+    modes : mapping of str to (float, float)
+        Of a robot: the frequency of every mode that moves told [Hz], the plan's and the robot's.
     """
 
     plan: Plan
@@ -62,6 +64,7 @@ class Learning:
     machine: Identified
     by_joint: bool
     notes: tuple[str, ...] = field(default=())
+    modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def is_done(self) -> bool:

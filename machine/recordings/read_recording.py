@@ -44,7 +44,7 @@ class ReadRecording(NamedTuple):
     notes: list[str]
 
 
-def notes_in_words(read: Sequence[ReadRecording]) -> list[str]:
+def notes_in_words(read: Sequence[Any]) -> list[str]:
     """The notes on files, each once, with the files that it is of."""
     files = dict[str, list[str]]()
     for one in read:
@@ -92,7 +92,7 @@ def read_recording(path: Path, columns: Columns, name: str) -> ReadRecording:
     }
     arrays: dict[str, Any] = {**signals, **flat}
     try:
-        recording = Recording(**arrays, name=name, tick=_tick(table, named, columns))
+        recording = Recording(**arrays, name=name, tick=tick_of(table, named, columns))
     except ValueError as error:
         raise FileFormatError(str(error)) from None
     notes = [unused_in_words(table.unused(headings)), *_without_unit(table, named, columns)]
@@ -116,7 +116,7 @@ def _factor(table: Table, heading: str, quantity: str, columns: Columns) -> floa
     return table.factor(heading, label, unit, scale, option=quantity)
 
 
-def _tick(table: Table, named: Mapping[str, Sequence[str]], columns: Columns) -> float:
+def tick_of(table: Table, named: Mapping[str, Sequence[str]], columns: Columns) -> float:
     """What the time's column counts in [s]; 0 where it has no whole numbers, or there is none."""
     if "time" not in named:
         return 0.0

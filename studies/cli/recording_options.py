@@ -9,6 +9,10 @@ from pathlib import Path
 import click
 
 from quietarm.machine.recordings.read_recording import Columns, ReadRecording, read_recording
+from quietarm.machine.recordings.read_robot_recording import (
+    ReadRobotRecording,
+    read_robot_recording,
+)
 from quietarm.machine.tables.table import read_table
 from quietarm.models import Plant
 from quietarm.models.dimensions import words_of
@@ -30,7 +34,9 @@ RECORDED = (
            "it the joint was held."),
     option("--tip", multiple=True, help="Column of a tip's displacement."),
     option("--acceleration", multiple=True, help="Column of an accelerometer at a tip."),
-    option("--torque", help="Column of the joint's torque, of a linear axis its force."),
+    option("--torque", help="Column of the joint's torque, of a linear axis its force; of a robot "
+           "what those of all joints begin with, as tau_ext of tau_ext[4].  [default: columns by "
+           "the joints' names]"),
     option("--units", type=Parsed("units", parse_units), help=_UNITS),
     option("--scale", "scales", type=Parsed("scale", parse_scales), multiple=True,
            help="What a count is in SI units, as angle=2pi/4096,tip=1e-5."),
@@ -57,8 +63,33 @@ def read_recordings(given: Given, paths: Sequence[Path], plant: Plant) -> list[R
     scales = once(chain.from_iterable(given.scales), "--scale ")
     _refuse_idle(names, {"--units": units, "--scale": scales}, plant.joint, given.rate is not None)
     columns = Columns(names, units, scales, given.rate, plant.joint)
+    return [read_recording(path, columns, name) for path, name in _named(paths)]
+
+
+def read_robot_recordings(
+    given: Given, paths: Sequence[Path], plant: Plant
+) -> list[ReadRobotRecording]:
+    """The recordings of a robot along a path, by the joints' names or what columns begin with."""
+    if given.tip:
+        raise click.UsageError(
+            "--tip is for plants of one joint; of a robot give the torques of its joints, by "
+            "--torque, or an accelerometer at the tip, by --acceleration"
+        )
+    if given.rate and given.time:
+        raise click.UsageError("--rate is for files without a column of the time; leave --time out")
+    names = {
+        quantity: [column] if isinstance(column, str) else list(column or ())
+        for quantity, column in given.pick("time", "angle", "acceleration", "torque").items()
+    }
+    scales = once(chain.from_iterable(given.scales), "--scale ")
+    columns = Columns(names, given.units or {}, scales, given.rate, plant.joint)
+    return [read_robot_recording(path, columns, name, plant) for path, name in _named(paths)]
+
+
+def _named(paths: Sequence[Path]) -> list[tuple[Path, str]]:
+    """Files with what they are called: without folders, where they are then told apart."""
     short = len({path.name for path in paths}) == len(paths)
-    return [read_recording(path, columns, path.name if short else str(path)) for path in paths]
+    return [(path, path.name if short else str(path)) for path in paths]
 
 
 def _refuse_idle(

@@ -154,6 +154,8 @@ class FlexibleRobot:
 class Truth:
     """A flexible robot whose driven joints follow a motion."""
 
+    tolerance = 1e-9
+
     def __init__(self, robot, driven, damping_ratio=0.0, hinges=(), softened=1.0, held=None):
         text = ElementTree.tostring(robot.root, encoding="unicode")
         self.model = mujoco.MjModel.from_xml_string(text)
@@ -182,16 +184,16 @@ class Truth:
         count = len(self.sprung)
         times = np.linspace(0.0, duration, 2001)
         begin = np.concatenate([self.sag(motion(0.0)[0]), np.zeros(count)])
-        states = self._followed(motion, times, begin)
+        states = self.followed(motion, times, begin)
         end = motion(duration)[0]
         still = (end, np.zeros_like(end), np.zeros_like(end))
-        later = self._followed(lambda _: still, np.linspace(0.0, window, 1001), states[:, -1])
+        later = self.followed(lambda _: still, np.linspace(0.0, window, 1001), states[:, -1])
         rest = self.tip_at(end, self.sag(end))
         away = [np.linalg.norm(self.tip_at(end, state[:count]) - rest) for state in later.T]
         powers, torques = [], []
         for time, state in zip(times, states.T):
             q, v, a = motion(time)
-            _, torque = self._accelerations(q, v, a, state[:count], state[count:])
+            _, torque = self.accelerations(q, v, a, state[:count], state[count:])
             powers.append(np.abs(torque * v))
             torques.append(np.abs(torque))
         energy = np.trapezoid(np.array(powers), times, axis=0).sum()
@@ -218,19 +220,22 @@ class Truth:
         rotation = self.data.xmat[self.body].reshape(3, 3)
         return self.data.xpos[self.body] + rotation @ self.along
 
-    def _followed(self, motion, times, begin):
+    def followed(self, motion, times, begin):
+        """States of the springs at some times, their angles and then their rates."""
         count = len(self.sprung)
 
         def rates(time, state):
-            accelerations, _ = self._accelerations(*motion(time), state[:count], state[count:])
+            accelerations, _ = self.accelerations(*motion(time), state[:count], state[count:])
             return np.concatenate([state[count:], accelerations])
 
         ends = (times[0], times[-1])
-        solved = solve_ivp(rates, ends, begin, "LSODA", times, rtol=1e-9, atol=1e-11)
+        solved = solve_ivp(
+            rates, ends, begin, "LSODA", times, rtol=self.tolerance, atol=1e-2 * self.tolerance
+        )
         assert solved.success
         return solved.y
 
-    def _accelerations(self, q, v, a, p, dp):
+    def accelerations(self, q, v, a, p, dp):
         """Of the springs, and torques of the driven joints."""
         masses, bias = self._dynamics(self._positions(q, p), self._rates(v, dp))
         of_springs = masses[np.ix_(self.sprung, self.sprung)]

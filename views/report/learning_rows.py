@@ -23,6 +23,8 @@ def learning_sentence(learned: Learning) -> str:
         if learned.by_joint
         else ("by friction and noise")
     )
+    if plant.has_path:
+        whose = "by noise and moves that differ"
     if learned.is_done:
         return (
             f"nothing more to learn: left {left}, floor {whose} {floor}; the next move is this one"
@@ -53,6 +55,8 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
         ),
     ]
     when = "during the moves" if learned.by_joint else "after the moves"
+    for name, (model, measured) in learned.modes.items():
+        rows.append((name, f"{measured:.4g} Hz after the moves, model {model:.4g} Hz"))
     for estimate in learned.estimates:
         size, unit = (2 * pi, " Hz") if is_frequency(plant, estimate.parameter) else (1.0, "")
         low, high = estimate.low / size, estimate.high / size
@@ -80,6 +84,12 @@ def _changed(learned: Learning) -> str:
         for name, (model, new) in learned.changed.items()
         if is_frequency(plant, name)
     ]
+    if plant.has_path:
+        modes = [f"{new:.4g} Hz, model {model:.4g} Hz" for model, new in learned.modes.values()]
+        words += [
+            f"springs {new / model:.4g} times as stiff, {', '.join(modes)}"
+            for model, new in learned.changed.values()
+        ]
     return "; ".join(words)
 
 

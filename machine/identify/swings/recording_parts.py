@@ -26,18 +26,19 @@ from quietarm.machine.identify.swings.swing_changes import (
 )
 from quietarm.machine.identify.swings.well_damped import find_well_damped
 from quietarm.machine.recordings.clocks import holes
-from quietarm.machine.recordings.recording import LEAST_ROWS
 
 Array = NDArray[np.float64]
-Spans = Sequence[tuple[float, float]]
 NO_SWING = "no swing stands out of the noise"
 """Why a recording in which no frequency is found has no part."""
 POOR = 0.2
 """Misfit, from which on a swing may be one that is damped well, or of two modes."""
 
 
-def fit_parts(fitter: PartFitter, by_hand: Spans = ()) -> tuple[list[Part], str]:
-    """The ring-downs of a recording, or why there are none; some may be chosen by hand."""
+def fit_parts(fitter: PartFitter, by_hand: bool = False) -> tuple[list[Part], str]:
+    """The ring-downs of a recording, or why there are none.
+
+    One that was cut out by hand is all of the recording.
+    """
     recording = fitter.recording
     parts = list[Part]()
     why = NO_SWING
@@ -48,39 +49,26 @@ def fit_parts(fitter: PartFitter, by_hand: Spans = ()) -> tuple[list[Part], str]
             parts = _with_fast_beats(fitter, parts)
     if all(part.misfit > POOR for part in parts):
         parts = _well_damped(fitter, by_hand) or parts
-    if moves(recording) and not by_hand:
+    if moves(recording):
         parts = with_hub(fitter, parts, slice(None))
-    elif moves(recording):
-        parts = [
-            with_motion
-            for part in parts
-            for with_motion in with_hub(fitter, [part], fitter.rows(part))
-        ]
     return parts, "" if parts else why
 
 
-def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
+def _periodic(fitter: PartFitter, by_hand: bool) -> tuple[list[Part], str]:
     """Ring-downs of several periods, or why there are none."""
-    if by_hand:
-        spans = [fitter.recording.rows(*ends) for ends in by_hand]
-        spans = [rows for rows in spans if _are_enough(rows)]
-    else:
+    spans = [slice(0, len(fitter.recording.time))]
+    if not by_hand:
         spans = find_ring_downs(fitter.recording, fitter.frequency)
     parts = list[Part]()
     why = _no_ring_down(fitter)
-    if by_hand and not spans:
-        time = fitter.recording.time
-        why = (
-            f"no part has {LEAST_ROWS} rows of it; it lasts from {time[0]:.6g} to {time[-1]:.6g} s"
-        )
     earliest = 0
     while spans:
         rows = spans[0]
         count = 1
-        part, best = fit_ring_down(fitter, rows, earliest, bool(by_hand))
+        part, best = fit_ring_down(fitter, rows, earliest, by_hand)
         beat = None
         if has_changes(fitter, part, best):
-            beat, count = _longest_beat(fitter, spans[:1] if by_hand else spans, best.p)
+            beat, count = _longest_beat(fitter, spans, best.p)
             if not beat or count == 1:
                 part = with_changes(fitter, part, best, rows)
         earliest = spans[count - 1].stop
@@ -97,10 +85,6 @@ def _periodic(fitter: PartFitter, by_hand: Spans) -> tuple[list[Part], str]:
             span = f"{part.begin:.6g} to {part.end:.6g} s"
             why = f"{span} is no free decay of {fitter.frequency:.3g} Hz"
     return parts, why
-
-
-def _are_enough(rows: slice) -> bool:
-    return rows.stop - rows.start >= LEAST_ROWS
 
 
 def _longest_beat(
@@ -165,30 +149,23 @@ def _overlap(first: Part, second: Part) -> bool:
     return first.begin < second.end and second.begin < first.end
 
 
-def _well_damped(fitter: PartFitter, by_hand: Spans) -> list[Part]:
-    """Swings that are over after a period or two, of all of the recording or of parts of it."""
+def _well_damped(fitter: PartFitter, by_hand: bool) -> list[Part]:
+    """Swings that are over after a period or two."""
     recording = fitter.recording
     much_damping = 0.06  # from which on a swing is over too soon for an envelope to show it
     usual = fitter.frequency
     parts = list[Part]()
-    spans = [rows for ends in by_hand if _are_enough(rows := recording.rows(*ends))]
-    for span in spans if by_hand else [slice(None)]:
-        piece = recording.part(span)
-        if moves(piece):
-            continue
-        swings = find_well_damped(piece)
-        if by_hand and len(swings) > 1:  # a part by hand is one ring-down
-            continue
-        for rows, frequency in swings:
-            fitter.frequency = frequency
-            begin = float(piece.time[rows.start])
-            end = float(piece.time[rows.stop - 1])
-            part = fitter.part(recording.rows(begin, end))
-            starts = fitter.starts(wide_range(frequency))
-            part, _ = fitter.fit(part, min(starts, key=fitter.model(part).cost))
-            is_damped = fitter.damping_of(part) > much_damping
-            if is_damped and part.misfit < max(POOR, 2 * part.noise):
-                parts.append(part)
+    swings = [] if moves(recording) else find_well_damped(recording)
+    if by_hand and len(swings) > 1:  # a part by hand is one ring-down
+        swings = []
+    for rows, frequency in swings:
+        fitter.frequency = frequency
+        part = fitter.part(rows)
+        starts = fitter.starts(wide_range(frequency))
+        part, _ = fitter.fit(part, min(starts, key=fitter.model(part).cost))
+        is_damped = fitter.damping_of(part) > much_damping
+        if is_damped and part.misfit < max(POOR, 2 * part.noise):
+            parts.append(part)
     if not parts:
         fitter.frequency = usual
     return parts

@@ -63,3 +63,23 @@ class TipWay:
         rest = self._frames(target)[:, 3]
         displaced = np.einsum("nij,jn->in", frames[:, :, self._directions], tips)
         return frames[:, :, 3].T - rest[:, None] + displaced
+
+    def felt(self, time: Array, places: Array, gravity: Array) -> Array:
+        """What an accelerometer at the tip feels where nothing swings [m/s^2].
+
+        Along the axes of the tip's frame in which it moves, shape (samples, axes).
+
+        Parameters
+        ----------
+        time, places : ndarray, shape (samples,)
+            When the tip is where on the path [s], close enough for differences.
+        gravity : ndarray, shape (3,)
+            As seen from the ground [m/s^2].
+        """
+        frames = self._frames(places)
+        speed = np.gradient(frames[:, :, 3], time, axis=0)
+        acceleration = np.gradient(speed, time, axis=0)
+        along: Array = np.einsum(
+            "nij,ni->nj", frames[:, :, self._directions], acceleration - gravity
+        )
+        return along

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -9,7 +10,9 @@ import click
 
 from quietarm.machine.identify import Identified
 from quietarm.machine.learn import learn as learning
-from quietarm.machine.recordings.read_recording import notes_in_words
+from quietarm.machine.recordings.read_recording import ReadRecording, notes_in_words
+from quietarm.machine.recordings.read_robot_recording import ReadRobotRecording
+from quietarm.models import Plant
 from quietarm.ocp import Plan
 from quietarm.ocp.files import check_writable
 from quietarm.studies.cli.given import Given
@@ -22,8 +25,12 @@ from quietarm.studies.cli.outputs import (
     finish,
     output_option,
 )
-from quietarm.studies.cli.quantities import parse_move, parse_share
-from quietarm.studies.cli.recording_options import RECORDED, read_recordings
+from quietarm.studies.cli.quantities import parse_move, parse_share, parse_usual
+from quietarm.studies.cli.recording_options import (
+    RECORDED,
+    read_recordings,
+    read_robot_recordings,
+)
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.sweep.learned_rows import set_rows, set_sentence
 from quietarm.views import pictures
@@ -49,6 +56,8 @@ def _machine_file(text: str) -> Path:
     option("--machine", type=Parsed("file", _machine_file), metavar="FILE",
            help="File of the machine that gets what was learned of its frequency, as identify "
            "writes it: a PLANT for other moves."),
+    option("--delay", type=Parsed("time", partial(parse_usual, "s", "a delay")), metavar="TIME",
+           help="Of a robot: by how much its torques are late, such as by a filter of 10ms."),
     *SOLVER,
     output_option({".json": "the next plan, which knows what it was learned from",
                    ".csv": "its path at 1 kHz", PICTURE: "a picture of it",
@@ -68,6 +77,7 @@ def learn(given: Given) -> None:
       quietarm learn plan.json run.csv --angle axis_mm --torque force_N --output next.json
       quietarm learn moves.zarr run1.csv run2.csv --move target=400mm,duration=800ms \\
           --move target=600mm,duration=900ms --tip tool_mm --angle axis_mm --output learned.zarr
+      quietarm learn robot_plan.json joint_states.yaml --output next.json
     """  # noqa: D301  # \b is click's: do not rewrap
     _refuse_the_plan_itself(given)
     if given.plan.is_dir():
@@ -81,13 +91,14 @@ def learn(given: Given) -> None:
         )
     plan = Plan.load(given.plan)
     known = _known_machine(given.machine, plan)
-    read = read_recordings(given, given.files, plan.task.plant)
+    read = _recordings(given, plan.task.plant)
     with busy("learning"):
         learned = learning(
             plan,
             [one.recording for one in read],
             dearer=given.dearer,
             solver=given.read_solver(),
+            delay=given.delay,
         )
     files = answer_files(given.output, lambda: pictures.motion_figure(learned.plan), learned.plan)
     if given.machine:
@@ -136,6 +147,18 @@ def _learn_set(given: Given) -> None:
         *notes_in_words(read),
         *(f"wrote {path}: {written.grid.cells} moves" for path in datasets if written),
     )
+
+
+def _recordings(given: Given, plant: Plant) -> Sequence[ReadRecording | ReadRobotRecording]:
+    """The recordings of the files: of a robot, or of one joint."""
+    if not plant.has_path:
+        return read_recordings(given, given.files, plant)
+    if given.machine:
+        raise click.UsageError(
+            "--machine is for plants of one joint; the answer says what to write into the robot's "
+            "file"
+        )
+    return read_robot_recordings(given, given.files, plant)
 
 
 def _refuse_the_plan_itself(given: Given) -> None:

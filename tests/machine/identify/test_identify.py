@@ -72,6 +72,26 @@ def test_a_push_tells_frequency_and_damping_and_not_how_the_machine_varies():
         _ = found.errors
 
 
+BEFORE = {
+    "a slow move": lambda t: 5000 * np.sin(2 * math.pi * 0.35 * t),
+    "a louder ring": lambda t: decay(t, 7.0, 0.1, 2000.0, start=0.3),
+    "spikes": lambda t: np.random.default_rng(1).normal(0, 500.0, len(t)),
+}
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.parametrize("before", BEFORE)
+def test_samples_outside_a_part_do_not_change_its_fit(before):
+    t = np.arange(0, 6, 0.005)
+    rings = t >= 2.0
+    tip = np.where(rings, noisy(decay(t, 2.96, start=2.0), 0.03), BEFORE[before](t))
+    part = [(2.1, 5.9)]
+    whole = beam(qa.Recording(t, tip=tip), parts=part)
+    late = t >= 2.1
+    assert whole == beam(qa.Recording(t[late], tip=tip[late]), parts=part)
+    assert whole.plant.omega / (2 * math.pi) == pytest.approx(2.96, rel=1e-3)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("trend", [0.0, 5.0])
 def test_ring_downs_are_found_between_pushes_rests_and_drift(trend):

@@ -1,0 +1,477 @@
+"""What swings after a robot's move, by the torques of its joints or an accelerometer at its tip.
+
+All signals are fitted with the same frequencies and dampings, each with amplitudes of its own; the
+plant's modes then say which swing of the tip has these. For a while after arrival the arm itself
+rings, at 5 to 7 Hz with a damping of 0.1 to 0.35, and so may a base or a gear: that is fitted as
+further modes, or left out by a later window, whichever leaves the swing surer. Where frequency and
+damping depend on the amplitude, the first periods alone are read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import tau
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quietarm.machine.learn.joint_torques import SeenModes
+from quietarm.machine.recordings.recording import noise_of
+from quietarm.machine.recordings.robot_recording import RobotRecording
+from quietarm.ocp.planning.executed import ArrivalSwing, RecordedArrival
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+SETTLES = 0.1
+"""Seconds after arrival that are not read: the controller settles."""
+LATER = 0.65
+"""Seconds after arrival from which on the arm itself rings no more."""
+LEAST_PERIODS = 2.0
+"""Of the slowest mode, that have to be recorded after that."""
+_PERIODS = 6.0
+_FEW_PERIODS = 3.0
+"""Those that are read where the frequency depends on the amplitude."""
+_RINGS = 3
+"""How many rings beside the modes are told: of the arm, a base in two directions, a gear."""
+_RING = ((5.0, 6.0, 7.0, 8.5, 10.0, 12.0, 15.0, 19.0), (0.01, 0.03, 0.1, 0.2, 0.35))
+"""Frequencies [Hz] and dampings from which the fit of such a ring begins."""
+_RING_BOUNDS = ((3.5, 0.002), (25.0, 0.5))
+_FAR = 0.5
+"""Share by which the robot's frequencies may be off the plan's."""
+_USUAL = 0.15
+"""The same, usually (a logarithm)."""
+_MOST_DAMPING = 0.05
+"""Of a mode of what is carried."""
+_CLOSE = 0.06
+"""Share of a frequency, within which some periods do not tell two modes apart."""
+_SEEN = 2.5
+"""Deviations, below which a swing is taken as none: torques hardly show some modes."""
+_STANDS_OUT = 5.0
+"""Deviations, from which on a mode tells its frequency."""
+
+
+@dataclass(frozen=True)
+class RobotSwing:
+    """What was read of the swing after one move.
+
+    Attributes
+    ----------
+    measured : RecordedArrival
+        For the history; its values are the frequencies of modes that stand out [Hz].
+    notes : tuple of str
+        How it was read.
+    other : float
+        What of the signals is no swing of the modes, as a displacement of the tip [m].
+    """
+
+    measured: RecordedArrival
+    notes: tuple[str, ...]
+    other: float
+
+
+def mode_name(number: int) -> str:
+    """What a mode is called in a history, the slowest with the number 0."""
+    return f"mode {number + 1}"
+
+
+def check_length(recording: RobotRecording, arrival: float, modes: SeenModes) -> None:
+    """ValueError where too little is recorded after arrival, or too seldom for its modes."""
+    slowest, fastest = float(modes.frequencies[0]), float(modes.frequencies[-1])
+    least = SETTLES + LEAST_PERIODS / slowest
+    lasts = float(recording.time[-1]) - arrival
+    if lasts < 0.97 * least:
+        raise ValueError(
+            f"{recording.name}: it is too short: it ends {max(lasts, 0.0):.2g} s after arrival; "
+            f"record until {least:.2g} s after it, better {SETTLES + _PERIODS / slowest:.2g} s"
+        )
+    least_samples = 4
+    rate = 1 / recording.step
+    if rate < least_samples * fastest:
+        raise ValueError(
+            f"{recording.name}: it has {rate:.3g} samples a second of a swing of {fastest:.3g} Hz, "
+            f"which looks like another frequency; record {20 * fastest:.3g} or more"
+        )
+
+
+def read_robot_swing(
+    recording: RobotRecording, arrival: float, modes: SeenModes, late: float, unsure: float
+) -> RobotSwing:
+    """The swing of every mode at arrival.
+
+    Parameters
+    ----------
+    recording : RobotRecording
+        Of the move.
+    arrival : float
+        When it ended [s].
+    modes : SeenModes
+        Those of the plant at the end of its path.
+    late : float
+        By how much the signals are late [s].
+    unsure : float
+        Standard deviation of the arrival's time [s].
+    """
+    fit, notes = _best_fit(_Window(recording, arrival, modes))
+    seen = np.abs(fit.at_arrival) > _SEEN * fit.deviations
+    amplitudes = np.where(seen, fit.at_arrival * np.exp(fit.by_mode * late), 0.0)
+    # a wrong start turns the phase
+    deviations = np.hypot(fit.deviations, np.abs(amplitudes * fit.by_mode) * unsure / 2**0.5)
+    swings = tuple(ArrivalSwing.of(complex(a), float(d)) for a, d in zip(amplitudes, deviations))
+    telling = np.abs(amplitudes) > _STANDS_OUT * fit.deviations
+    values = {
+        mode_name(k): float(abs(fit.by_mode[k]) / tau) for k in np.flatnonzero(telling).tolist()
+    }
+    spreads = {
+        mode_name(k): float(abs(fit.by_mode[k]) / tau * fit.rate_deviations[k])
+        for k in np.flatnonzero(telling).tolist()
+    }
+    measured = RecordedArrival(recording.name, swings, values, spreads)
+    return RobotSwing(measured, tuple(f"{recording.name}: {note}" for note in notes), fit.other)
+
+
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """What is read of a recording after arrival: from when, and how long.
+
+    Times are since arrival [s]; periods are those of the slowest mode.
+    """
+
+    recording: RobotRecording
+    arrival: float
+    modes: SeenModes
+    begin: float = SETTLES
+    periods: float = _PERIODS
+
+    @cached_property
+    def rows(self) -> slice:
+        """Those of the recording."""
+        end = self.begin + self.periods / float(self.modes.frequencies[0])
+        first, last = np.searchsorted(self.recording.time - self.arrival, [self.begin, end])
+        return slice(int(first), int(last))
+
+    @cached_property
+    def signals(self) -> tuple[Array, Array]:
+        """Times and columns, thinned by means where samples are dense."""
+        samples = 32  # a period of the fastest mode
+        time = self.recording.time[self.rows] - self.arrival
+        values = self.recording.swinging[1][self.rows]
+        size = int(1 / (samples * self.modes.frequencies[-1] * self.recording.step))
+        if size > 1 and len(time) > 4 * size:
+            count = len(time) // size * size
+            time = time[:count].reshape(-1, size).mean(axis=1)
+            values = values[:count].reshape(len(time), size, -1).mean(axis=1)
+        return time, values
+
+    @property
+    def lasts(self) -> float:
+        """How many periods of the slowest mode it has."""
+        return float(np.ptp(self.signals[0])) * float(self.modes.frequencies[0])
+
+
+def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
+    """The fit that makes the swing at arrival surest, and how it reads it."""
+    best = _with_rings(window)
+    notes = list[str]()
+    if best.rings:
+        rings = " and ".join(f"{f:.2g} Hz with a damping of {z:.2g}" for f, z in best.rings)
+        words = f"the arm itself rings after arrival, at {rings}: "
+        later = _later(window)
+        if later is not None and later.deviations.sum() < best.deviations.sum():
+            best = later
+            notes.append(f"{words}the swing is read from {LATER:g} s after arrival on")
+        else:
+            notes.append(f"{words}that is fitted beside the swing")
+    short = _shorter(best)
+    if short is not None:
+        longer, few = best.clearest, short.clearest
+        notes.append(
+            f"frequency and damping depend on the amplitude, {few[0]:.4g} Hz and {few[1]:.2g} in "
+            f"the first {_FEW_PERIODS:g} periods, {longer[0]:.4g} Hz and {longer[1]:.2g} in "
+            f"{_PERIODS:g}: the first are read"
+        )
+        best = short
+    return best, notes
+
+
+def _with_rings(window: _Window) -> _Fit:
+    """The fit of the modes, and of as many rings beside them as clearly help."""
+    clearly = 0.7  # share of what is left without one more ring
+    best = more = _Fit(window)
+    for _ in range(_RINGS):  # of two that beat, one alone hardly helps
+        more = _Fit(window, more.with_ring())
+        if more.left < clearly * best.left and more.are_apart:
+            best = more
+    return best
+
+
+def _later(window: _Window) -> _Fit | None:
+    """The fit of a window that begins later; None where too little is recorded."""
+    later = replace(window, begin=LATER)
+    enough = len(later.recording.time[later.rows]) > 8
+    return _Fit(later) if enough and later.lasts >= LEAST_PERIODS else None
+
+
+def _shorter(fit: _Fit) -> _Fit | None:
+    """A fit of the first periods alone, where it meets them clearly better than one of all."""
+    clearly = 0.6
+    apart = 3.0  # deviations
+    window = fit.window
+    if window.lasts < 1.2 * _FEW_PERIODS:
+        return None
+    short = _Fit(replace(window, periods=_FEW_PERIODS), fit.found if fit.rings else None)
+    differs = abs(np.log(short.clearest[0] / fit.clearest[0]))
+    of_both = float(np.hypot(short.rate_deviations.min(), fit.rate_deviations.min()))
+    if short.left < clearly * fit.left and differs > apart * of_both:
+        return short
+    return None
+
+
+class _Fit:
+    """The swings of a window: frequencies and dampings of all signals, amplitudes of each.
+
+    From where it begins, logarithms of them, those of rings after those of the modes; by default
+    the modes alone.
+    """
+
+    def __init__(self, window: _Window, start: Array | None = None) -> None:
+        self.window = window
+        self._time, self._values = window.signals
+        self._clusters = _clusters(window.modes.frequencies)
+        of_modes = [window.modes.values[modes[0]] for modes in self._clusters]
+        self._model = np.array([[np.log(abs(v)), np.log(_damping(v))] for v in of_modes])
+        self._size = np.maximum(noise_of(self._values), 1e-3 * self._values.std() + 1e-300)
+        x = self._coarse() if start is None else start
+        self._ring_count = len(x) // 2 - len(self._model)
+        self._coarse_rates = x[0 : 2 * len(self._model) : 2]
+        for _ in range(2):
+            x = self._fitted(x)
+            self._size = self._deviation_of(x)
+        self.found = x
+
+    # What was found
+
+    @cached_property
+    def left(self) -> float:
+        """Mean power that is left, of all signals."""
+        residual = self._solved(self.found)[1]
+        return float((residual**2).mean())
+
+    @property
+    def rings(self) -> list[tuple[float, float]]:
+        """Frequency [Hz] and damping of what rings beside the modes."""
+        values = self._eigenvalues(self.found)[len(self._model) :]
+        return [(float(abs(value)) / tau, _damping(value)) for value in values]
+
+    @property
+    def are_apart(self) -> bool:
+        """Whether all that rings is not a mode's swing: damped heavily, or far from each."""
+        heavily = 0.08
+        modes = np.abs(self.by_mode) / tau
+        return all(
+            damping > heavily or np.abs(np.log(frequency / modes)).min() > _USUAL
+            for frequency, damping in self.rings
+        )
+
+    def with_ring(self) -> Array:
+        """Where a fit with one more ring begins."""
+        starts = [
+            np.append(self.found, [np.log(tau * hertz), np.log(damping)])
+            for hertz in _RING[0]
+            for damping in _RING[1]
+        ]
+        return min(starts, key=lambda x: float(((self._solved(x)[1] / self._size) ** 2).sum()))
+
+    @property
+    def clearest(self) -> tuple[float, float]:
+        """Frequency [Hz] and damping of the mode that stands out most."""
+        clearest = int((np.abs(self.at_arrival) / self.deviations).argmax())
+        value = self.by_mode[clearest]
+        return float(abs(value)) / tau, _damping(value)
+
+    @cached_property
+    def by_mode(self) -> ComplexArray:
+        """Eigenvalue of every mode: modes that are not told apart have the same."""
+        return self._spread(self._eigenvalues(self.found))
+
+    @cached_property
+    def at_arrival(self) -> ComplexArray:
+        """Swing of the tip by every mode at arrival."""
+        return self._projected(self.found)[0]
+
+    @cached_property
+    def other(self) -> float:
+        """What of the swing the modes' shapes do not meet, as a displacement of the tip."""
+        return self._projected(self.found)[1]
+
+    @cached_property
+    def deviations(self) -> Array:
+        """Standard deviation of the two parts of each swing at arrival."""
+        steps = 1e-4
+        of_rates = np.zeros((len(self.at_arrival), len(self.found)), complex)
+        for k, unit in enumerate(np.eye(len(self.found))):
+            ahead, _ = self._projected(self.found + steps * unit)
+            of_rates[:, k] = (ahead - self.at_arrival) / steps
+        by_rates = np.einsum("ij,jk,ik->i", of_rates, self._covariance, of_rates.conj()).real / 2
+        design = self._design(self._eigenvalues(self.found))
+        inverse: Any = np.linalg.pinv(design.T @ design, hermitian=True)
+        by_noise = np.zeros(len(self.at_arrival))
+        since = float(self._time[0])
+        values = self._eigenvalues(self.found)
+        for c, modes in enumerate(self._clusters):
+            rows = self.window.modes.rows_at(self._spread(values))[:, modes]
+            power = np.linalg.pinv(rows / self._size[:, None])
+            of_one = np.sqrt(inverse[2 * c, 2 * c] + inverse[2 * c + 1, 2 * c + 1]) / 2**0.5
+            grown = float(np.exp(-values[c].real * since))
+            # what is left is no white noise: neighbours have the same
+            by_noise[modes] = of_one * grown * np.linalg.norm(power, axis=1) * self._alike**0.5
+        return np.sqrt(by_rates + by_noise**2)
+
+    @cached_property
+    def rate_deviations(self) -> Array:
+        """Standard deviation of each mode's frequency, as a share."""
+        shares = np.sqrt(np.diag(self._covariance)[0::2])
+        return self._spread(shares)
+
+    # The fit
+
+    def _coarse(self) -> Array:
+        """Frequencies from which the fit begins: the plant's, all by the factor that fits best.
+
+        By the shapes of the plant's modes, which tell one mode from another.
+        """
+        best = (np.inf, self._model.ravel())
+        for factor in np.linspace(-np.log(1 + _FAR), np.log(1 + _FAR), 81):
+            x = (self._model + np.array([factor, 0.0])).ravel()
+            cost = self._cost_by_shapes(x) * (1 + (factor / _USUAL) ** 2 / 50)
+            if cost < best[0]:
+                best = (cost, x)
+        return best[1]
+
+    def _cost_by_shapes(self, x: Array) -> float:
+        """What is left where the signals swing as the modes' shapes have it."""
+        values = self._spread(self._eigenvalues(x))
+        rows = self.window.modes.rows_at(values) / self._size[:, None]
+        swings = np.exp(np.outer(self._time, values))
+        columns = list[Array]()
+        for mode in range(len(values)):
+            shape = np.multiply.outer(swings[:, mode], rows[:, mode])
+            columns += [shape.real.ravel(), -shape.imag.ravel()]
+        design = np.column_stack([self._without_mean(column) for column in columns])
+        values_left = self._without_mean((self._values / self._size).ravel())
+        sizes, *_ = np.linalg.lstsq(design, values_left, rcond=None)
+        return float(((values_left - design @ sizes) ** 2).sum())
+
+    def _without_mean(self, column: Array) -> Array:
+        """A column of all signals without each signal's mean."""
+        by_signal = column.reshape(len(self._time), -1)
+        return (by_signal - by_signal.mean(axis=0)).ravel()
+
+    @cached_property
+    def _still(self) -> Array:
+        """Columns of what does not swing: an offset and a slow drift."""
+        return np.column_stack([np.ones_like(self._time), self._time - self._time.mean()])
+
+    def _fitted(self, x: Array) -> Array:
+        """Frequencies and dampings that meet the signals best."""
+        from scipy.optimize import least_squares  # not at the top: it takes long to load
+
+        rates = np.stack([self._coarse_rates, np.zeros(len(self._model))], axis=1).ravel()
+        # a mode that does not swing is not to follow what another does
+        lower = rates + np.array([[-_USUAL, np.log(1e-4)]] * len(self._model)).ravel()
+        upper = rates + np.array([[_USUAL, np.log(_MOST_DAMPING)]] * len(self._model)).ravel()
+        (slow, light), (fast, heavy) = _RING_BOUNDS
+        lower = np.append(lower, [np.log(tau * slow), np.log(light)] * self._ring_count)
+        upper = np.append(upper, [np.log(tau * fast), np.log(heavy)] * self._ring_count)
+        start = np.clip(x, lower + 1e-6, upper - 1e-6)
+        anchor = start.copy()
+        anchor[1 : 2 * len(self._model) : 2] = self._model[:, 1]
+
+        def residuals(x: Array) -> Array:
+            _, left = self._solved(x)
+            swings = (left / self._size).ravel() / self._alike**0.5
+            return np.concatenate([swings, (x - anchor) / self._usual])
+
+        found: Any = least_squares(residuals, start, bounds=(lower, upper), x_scale=0.01)
+        slopes = found.jac
+        self._covariance: Any = np.linalg.pinv(slopes.T @ slopes, hermitian=True)
+        return np.asarray(found.x, float)
+
+    @property
+    def _usual(self) -> Array:
+        """Standard deviations of what is sought before anything is recorded."""
+        of_modes, of_rings = [_USUAL, 1.0], [0.3, 0.7]
+        return np.array(of_modes * len(self._model) + of_rings * self._ring_count)
+
+    @property
+    def _alike(self) -> float:
+        """How many neighbours tell the same: what is left swings as fast as the fastest mode."""
+        step = float(np.median(np.diff(self._time)))
+        return max(1.0, 1 / (8 * float(self.window.modes.frequencies[-1]) * step))
+
+    def _deviation_of(self, x: Array) -> Array:
+        """Standard deviation of what is left of each signal."""
+        _, left = self._solved(x)
+        freedom = max(len(self._time) - 2 * len(x) - 2, 1)
+        return np.maximum(np.sqrt((left**2).sum(axis=0) / freedom), 1e-6 * self._size)
+
+    def _eigenvalues(self, x: Array) -> ComplexArray:
+        """Of every cluster, and then of what rings beside them."""
+        rates, dampings = np.exp(x[0::2]), np.exp(x[1::2])
+        values: ComplexArray = rates * (-dampings + 1j * np.sqrt(1 - dampings**2))
+        return values
+
+    def _design(self, values: ComplexArray) -> Array:
+        """Columns by which every signal is met: two a swing, from the first sample on."""
+        swings = np.exp(np.outer(self._time - self._time[0], values))
+        columns = np.stack([swings.real, -swings.imag], axis=2).reshape(len(swings), -1)
+        return np.column_stack([columns, self._still])
+
+    def _solved(self, x: Array) -> tuple[ComplexArray, Array]:
+        """Amplitudes of every swing in every signal (swings, signals), and what is left."""
+        values = self._eigenvalues(x)
+        design = self._design(values)
+        sizes, *_ = np.linalg.lstsq(design, self._values, rcond=None)
+        left = self._values - design @ sizes
+        of_swings = sizes[: 2 * len(values)]
+        return of_swings[0::2] + 1j * of_swings[1::2], left
+
+    def _projected(self, x: Array) -> tuple[ComplexArray, float]:
+        """Swings of the tip at arrival by mode, and what no mode has, by a tip's displacement."""
+        values = self._eigenvalues(x)
+        by_signal, _ = self._solved(x)
+        rows = self.window.modes.rows_at(self._spread(values))
+        since = float(self._time[0])
+        found = np.zeros(rows.shape[1], complex)
+        missed = 0.0
+        for c, modes in enumerate(self._clusters):
+            shapes = rows[:, modes] / self._size[:, None]
+            weighed = by_signal[c] / self._size
+            sizes, *_ = np.linalg.lstsq(shapes, weighed, rcond=None)
+            rest = np.linalg.norm(weighed - shapes @ sizes) / np.linalg.norm(shapes, axis=0).max()
+            found[modes] = sizes * np.exp(-values[c] * since)
+            missed = max(missed, float(rest))
+        return found, missed
+
+    def _spread(self, of_clusters: NDArray[Any]) -> NDArray[Any]:
+        """What clusters have, by mode."""
+        by_mode = np.zeros(len(self.window.modes.values), of_clusters.dtype)
+        for value, modes in zip(of_clusters, self._clusters):
+            by_mode[modes] = value
+        return by_mode
+
+
+def _clusters(frequencies: Array) -> list[list[int]]:
+    """Numbers of modes, those together that are too close to be told apart."""
+    clusters = [[0]]
+    for mode in range(1, len(frequencies)):
+        if frequencies[mode] / frequencies[mode - 1] < 1 + _CLOSE:
+            clusters[-1].append(mode)
+        else:
+            clusters.append([mode])
+    return clusters
+
+
+def _damping(value: complex) -> float:
+    return float(-value.real / abs(value))
