@@ -22,9 +22,12 @@ def spline(
     point and ends at the last one.
     """
     clamped = [knots[0]] * degree + list(knots) + [knots[-1]] * degree
+    rows = b_splines(clamped, degree, at)
     values = list[Expression]()
     for order in range(degree, degree - derivatives - 1, -1):
-        basis = b_splines(clamped, order, at)
+        # of a lower degree the first and last ones stand on repeated knots alone: they are nothing
+        unused = degree - order
+        basis = rows[order][unused : len(rows[order]) - unused]
         values.append(sum(point * B for point, B in zip(points, basis)))
         clamped = clamped[1:-1]
         # its derivative's: differences over the length that neighbouring B-splines share
@@ -35,13 +38,14 @@ def spline(
     return values
 
 
-def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[Expression]:
-    """Every B-spline of a degree on clamped knots, by de Boor's recursion."""
+def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[list[Expression]]:
+    """Every B-spline on clamped knots of each degree from 0, by de Boor's recursion."""
     last = len(knots) - degree - 2
     row: list[Expression] = [0.0] * (len(knots) - 1)
     for i in range(degree, last + 1):  # degree 0: in which piece it is, the ends included
         after = at >= knots[i] if i > degree else 1
         row[i] = after * (at < knots[i + 1] if i < last else 1) + 0 * at
+    rows = [row]
     for d in range(1, degree + 1):
         pairs = list(zip(knots, knots[d:]))
         shares = [_share(at, *pair) for pair in pairs]
@@ -49,7 +53,8 @@ def b_splines(knots: Sequence[float], degree: int, at: Expression) -> list[Expre
             _blend(before, shares[i], after, shares[i + 1])
             for i, (before, after) in enumerate(pairwise(row))
         ]
-    return row
+        rows.append(row)
+    return rows
 
 
 def _blend(
