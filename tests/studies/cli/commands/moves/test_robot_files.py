@@ -84,19 +84,25 @@ def test_a_line_whose_orientation_is_free_is_one_for_two_joints(folder, call, re
 def test_waypoints_are_blended_and_taken_in_part(folder, call, refused):
     write_robot(folder, ARM, ARM_FILE)
     Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
-    code, out, _ = call("list robot.yaml --path points.csv --blend 20mm")
-    assert code == 0
-    assert re.search(r"waypoint 2 is passed at [\d.]+ mm, blended within 20 mm", _words(out))
     code, out, _ = call("list robot.yaml --path points.csv --waypoints 2:4 --blend 5mm")
     assert code == 0
-    assert "waypoint 2 is passed" in _words(out)
+    assert re.search(r"waypoint 2 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
     assert "waypoint 3" not in out
     for words, remedy in (
         ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, as 2:4"),
         ("--waypoints 3:9", "path points.csv: waypoints 3:9 are none of 4; give the numbers of"),
+        ("--blend 5mm --path-tolerance 1deg", "--path-tolerance is for a spline, and --blend"),
+    ):
+        assert remedy in refused(f"list robot.yaml --path points.csv {words}")
+
+
+@pytest.mark.slow
+def test_radii_that_do_not_fit_the_waypoints_are_refused(folder, refused):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
+    for words, remedy in (
         ("--blend 2deg", "'2deg' is not a radius of --blend"),
         ("--blend 1mm,2mm,3mm", "path points.csv: there are 3 radii and 2 waypoints between"),
-        ("--blend 5mm --path-tolerance 1deg", "--path-tolerance is for a spline, and --blend"),
         ("--waypoints 3:4 --blend 5mm", "a blend is at a waypoint between two others"),
     ):
         assert remedy in refused(f"list robot.yaml --path points.csv {words}")
