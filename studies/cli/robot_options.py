@@ -73,9 +73,11 @@ def _blended(given: Given, robot: Robot) -> GeometricPath:
     given.refuse(["path_tolerance"], "is for a spline, and --blend states how round corners are")
     words = given.blend.split(",")
     radii = [parse_quantity(word, "m", "a radius of --blend") for word in words]
-    table = read_joint_table(given.path).between(_waypoints(given))
+    table = read_joint_table(given.path)
+    some = _waypoints(given)
     radius = radii[0] if len(radii) == 1 else radii
     try:
+        table = table.between(some)
         path = GeometricPath.blended(robot, table.positions, radius, joints=table.joints)
     except ValueError as error:
         raise ValueError(f"path {given.path}: {error}") from None

@@ -10,8 +10,7 @@ from small_robots import ARM, write_robot
 from trajectories import trapezoid
 
 import quietarm as qa
-from quietarm.ocp import InfeasibleTaskError
-from quietarm.studies import MessagePlanner
+from quietarm.studies import MessagePlanner, trajectory_messages
 
 FILE = """urdf: robot.urdf
 beam: {at: tool, length: 0.5, width: 6mm, height: 10mm, youngs_modulus: 70GPa, density: 2700,
@@ -38,7 +37,11 @@ def response(grip=0.02):
     return motion_plan_response(message, {"a": 0.0, "b": 0.1, "grip": grip})
 
 
-def test_the_answer_is_a_message_of_the_same_joints_along_the_same_path(robot):
+def test_the_answer_is_a_message_of_the_same_joints_along_the_same_path(robot, monkeypatch):
+    """With the plain cycloid in place of a plan, whose solve the slow tests do."""
+    monkeypatch.setattr(
+        trajectory_messages, "plan_move", lambda task, _: qa.evaluate_coefficients(task, [])
+    )
     planned = MessagePlanner(robot, terms=2, rate=50.0, judge=False).plan(response(grip=0.0))
     assert json.loads(json.dumps(planned.message)) == planned.message  # plain numbers and texts
     message = planned.message["joint_trajectory"]
@@ -62,7 +65,6 @@ def test_the_answer_is_a_message_of_the_same_joints_along_the_same_path(robot):
     np.testing.assert_array_equal(table[:, 1:, 1], 0.0)  # the gripper stands
     share = table[:, 0, 2] / 0.8
     np.testing.assert_allclose(table[:, 0, 0], 0.1 + 0.5 * share, atol=1e-9)  # on the line
-    assert planned.plan.residual < 1e-5
     assert planned.report.startswith("1.3 s, 66 points: ")
     assert "\n" not in planned.report
     assert planned.remarks[1] == ("joint 'grip' is at 0, and the robot's file holds it at 0.02")
@@ -137,14 +139,11 @@ def test_limits_by_shares_take_longer_and_the_report_says_what_the_message_left(
     limited = qa.Robot.load(write_robot(tmp_path, ARM, FILE, limits))
     planner = MessagePlanner(limited, terms=6)
     message = trajectory(duration=1.1)
-    with pytest.raises(InfeasibleTaskError):
-        MessagePlanner(limited, terms=6, slowest=1.0).plan(message, acceleration_scale=0.3)
     planned = planner.plan(message, acceleration_scale=0.5)
     points = planned.message["joint_trajectory"]["points"]
     peak = max(abs(point["accelerations"][2]) for point in points)
     assert 0.5 * 3.0 < peak < 3.0 * 1.001  # half of what the robot's file allows
     assert planned.plan.task.duration > 1.1
+    assert planned.plan.residual < 1e-5
     assert "in 1.1 s no plan is within the limits" in planned.report
     assert "after arrival by the whole equations (the message as it was timed:" in planned.report
-    again = planner.plan(planned.message)  # what comes out goes in
-    assert again.plan.task.duration == pytest.approx(planned.plan.task.duration)

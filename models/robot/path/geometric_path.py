@@ -301,8 +301,9 @@ class GeometricPath:
         waypoints : (int, int), optional
             The first and the last of the file's points that it takes, counted from 1.
         """
-        table = read_joint_table(path).between(waypoints)
+        table = read_joint_table(path)
         try:
+            table = table.between(waypoints)
             if within is not None or len(table.positions) > MOST_WAYPOINTS:
                 through = cls.within(
                     table.positions, within or USUAL_TOLERANCE, degree=degree, joints=table.joints

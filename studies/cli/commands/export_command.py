@@ -149,6 +149,8 @@ def export(given: Given) -> None:
     whose moves are written as C with the interpolation between them. Of tables, trajectories, cams
     and records a line says how far an interpolation between their points is from the plan at most.
 
+    A trajectory of ROS 2 takes several PLANs as moves in a row, with a pause between two.
+
     A film shows several PLANs side by side on one clock, one alone beside the plain cycloid of its
     move. Links bend as their modes do; the picture says how far that is exaggerated. An mp4 needs
     the program ffmpeg.
@@ -163,6 +165,7 @@ def export(given: Given) -> None:
       quietarm export plan.json --output move.c
       quietarm export plan.json --output move.csv --columns time:ms,angle:deg,torque --rate 500
       quietarm export plan.json --output move.yaml --joint shoulder_pan_joint --rate 100
+      quietarm export first.json second.json --pause 0.5 --output moves.moveit
       quietarm export plan.json --output move.st
       quietarm export plan.json --output move.cam --layout codesys --unit deg
       quietarm export plan.json --output move.cia402 --increments-per-revolution 1e6 --period 2ms

@@ -149,7 +149,7 @@ def test_a_robot_is_the_same_in_another_process():
     ("friction: {elbow_joint: fast}\n", "'fast' is not friction of elbow_joint"),
     ("springs: {elbow_joint: 0}\n", "stiffness of elbow_joint in springs is 0"),
     ("springs: {elbow_joint: {softness: 3}}\n", "springs of elbow_joint has no entry 'softness'"),
-    ("base: {stiffness: [1, 2, 3]}\n", "stiffness of the base has 3 numbers"),
+    ("base: {stiffness: [1, 2, 3, 4]}\n", "stiffness of the base has 4 numbers"),
     ("limits: none.yaml\n", "none.yaml cannot be read: no such file"),
     ("limits: 3\n", "give a joint_limits.yaml of MoveIt, or urdf"),
     ("measured: {frequency: 3, at: [0, 0, 0, 0, 0, 0]}\n", "say its unit, as 3Hz"),

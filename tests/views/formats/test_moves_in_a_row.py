@@ -69,14 +69,6 @@ def test_a_pause_lies_between_two_moves(moves, tmp_path):
     assert message["points"][-1]["positions"] == pytest.approx(PLACES[2], abs=1e-9)
 
 
-@pytest.mark.slow
-def test_without_a_pause_a_stop_is_one_point(moves, tmp_path):
-    path = exported(moves, tmp_path, "moves.yaml", rate=100.0)
-    points = yaml.safe_load(path.read_text())["points"]
-    assert len(points) == 61 + 47 - 1
-    assert TimedMotion.load(path).duration == pytest.approx(0.6 + 0.46)
-
-
 def test_moves_that_do_not_join_are_refused(moves):
     words = "move 1 ends with 'b' at 0.6, and move 2 begins with it at 0.1; give each move from"
     with pytest.raises(ValueError, match=words):
@@ -90,6 +82,7 @@ def test_moves_that_do_not_join_are_refused(moves):
         points_of_several([moves[0], other], 100.0, None, 0.0)
 
 
+@pytest.mark.slow
 def test_moves_of_one_joint_are_joined_as_well(tmp_path):
     plant = qa.SingleLinkManipulator()
     there = qa.evaluate_coefficients(plant.task(0.5, 0.8), [])

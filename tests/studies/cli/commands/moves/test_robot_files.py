@@ -81,6 +81,36 @@ def test_a_line_whose_orientation_is_free_is_one_for_two_joints(folder, call, re
     assert "driven a, b" in _words(out)
 
 
+def test_waypoints_are_blended_and_taken_in_part(folder, call, refused):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
+    code, out, _ = call("list robot.yaml --path points.csv --waypoints 2:4 --blend 5mm")
+    assert code == 0
+    assert re.search(r"waypoint 2 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
+    assert "waypoint 3" not in out
+    for words, remedy in (
+        ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, as 2:4"),
+        ("--waypoints 3:9", "path points.csv: waypoints 3:9 are none of 4; give the numbers of"),
+        ("--blend 5mm --path-tolerance 1deg", "--path-tolerance is for a spline, and --blend"),
+    ):
+        assert remedy in refused(f"list robot.yaml --path points.csv {words}")
+
+
+@pytest.mark.slow
+def test_radii_that_do_not_fit_the_waypoints_are_refused(folder, refused):
+    write_robot(folder, ARM, ARM_FILE)
+    Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
+    for words, remedy in (
+        ("--blend 2deg", "'2deg' is not a radius of --blend"),
+        ("--blend 1mm,2mm,3mm", "path points.csv: there are 3 radii and 2 waypoints between"),
+        ("--waypoints 3:4 --blend 5mm", "a blend is at a waypoint between two others"),
+    ):
+        assert remedy in refused(f"list robot.yaml --path points.csv {words}")
+    assert "--blend is for the waypoints of --path" in refused(f"plan {LINE} --blend 5mm")
+    timed = "evaluate robot.yaml --path points.csv --as-timed --blend 5mm"
+    assert "--blend" in refused(timed)
+
+
 def test_a_repeated_waypoint_is_named(folder, call):
     write_robot(folder, ARM, ARM_FILE)
     Path("close.csv").write_text("a,b\n0,0\n0.5,0.3\n0.50001,0.30001\n1.0,0.5\n")
