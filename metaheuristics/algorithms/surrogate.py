@@ -210,8 +210,12 @@ def _next(
     chosen = list[int]()
     front = F[best]
     corner = _corner(F[feasible], front)
-    for _ in range(together):
+    ends_every = 5  # times: an end of the front adds little area, and is what many look for
+    for turn in range(surrogate.used, surrogate.used + together):
         gain = _gain(front, corner, optimistic, random) * keeps
+        if turn % ends_every == 0:
+            end = optimistic[:, turn // ends_every % objectives]
+            gain = (end.max() - end) * keeps
         gain[chosen] = -np.inf
         chosen.append(int(np.argmax(gain)))
         front = np.vstack([front, optimistic[chosen[-1]]])
