@@ -33,8 +33,8 @@ SECONDS_OF_CANDIDATE = 5e-5
 """Of a core: 40,000 of the paper's first move take two seconds."""
 DEFAULT = "nsga2"
 """The method of a search of a move where none is named."""
-DEFAULT_OF_FUNCTIONS = "nsga2"
-"""That of a search of a function, which affords fewer candidates."""
+DEFAULT_OF_FUNCTIONS = {1_000: "gp", MOST_EVALUATIONS: "moead-de"}
+"""Methods of a search of a function where none is named, by the most candidates they are for."""
 SEARCH_RESIDUAL = 1e-3
 """Residual [m] at which the energies of searches are compared."""
 
@@ -115,7 +115,7 @@ def search(
         A name of `PRESETS`: ``"nsga2-paper"`` and ``"vepso"`` have the paper's settings, the others
         pymoo's. Or an object of one's own `SearchMethod`. Or any multi-objective algorithm of pymoo
         that was not run yet; it is copied, so the one given stays as it is. By default
-        ``"nsga2"``; of a function `DEFAULT_OF_FUNCTIONS`.
+        ``"nsga2"``; of a function that of `DEFAULT_OF_FUNCTIONS` for the number of candidates.
     bound : float
         Largest absolute coefficient; required, unless the profile has a `default_bound`.
     lower, upper, units, constraints, reference, vectorized
@@ -314,7 +314,11 @@ class SearchRun:
                 "function may take long"
             )
         if algorithm is None:
-            algorithm = DEFAULT if of_move else DEFAULT_OF_FUNCTIONS
+            algorithm = (
+                DEFAULT
+                if of_move
+                else default_of_function(evaluations, population or generations or start)
+            )
         if isinstance(algorithm, SearchMethod):
             settings = {name: getattr(algorithm, name) for name in algorithm.defaults()}
             algorithm = algorithm.name
@@ -375,6 +379,16 @@ class SearchRun:
     def front(self) -> Front:
         """Make the front of what was found until now."""
         return self.function.front(self.method, self.seed, {**self.limits, **self.stated})
+
+
+def default_of_function(evaluations: int | None, needs_population: object = None) -> str:
+    """The method of a search of a function for so many candidates, where none is named.
+
+    One with a population where that, or generations, or a front to start from are given.
+    """
+    count = MOST_EVALUATIONS if evaluations is None or needs_population else evaluations
+    fits = (name for most, name in DEFAULT_OF_FUNCTIONS.items() if count <= most)
+    return next(fits, DEFAULT)
 
 
 def _profile_of(profile: object) -> JointProfile:

@@ -75,7 +75,7 @@ def motion_of(
     duration = task.duration + not_negative("after", after, "s")
     interval = positive("step", step, "s")
     samples = whole("samples", math.floor(duration / interval + 1e-9), 1, most) + 1
-    time = np.arange(samples) * interval
+    time: Array = np.arange(samples, dtype=float) * np.float64(interval)
     path = profile.path(coefficients, *task.move)
     along = [path(time, order) for order in range(3)]
     if len(task.plant.joint_names) == 1:

@@ -1,9 +1,10 @@
 """A (1+1) evolution strategy with an archive: one candidate after another, for small budgets.
 
-The parent is a candidate of the archive, the less crowded of two. Its child takes a normal step
-whose length is drawn anew each time, from a thousandth to a third of the box, and at times a share
-of the difference of two others as well. Where no candidate is feasible yet, those of least
-violation are the archive. After Knowles and Corne, whose archive chooses in the same way [1]_.
+The parent is a candidate of the archive, the less crowded of two, as in [1]_. Its child takes a
+normal step, in all coefficients or in about half of them, whose length is drawn about a common one;
+that grows with every child that enters the archive, and shrinks with others so that a fifth do. At
+times a share of the difference of two other candidates is added. Where no candidate is feasible
+yet, those of least violation are the archive.
 
 References
 ----------
@@ -28,31 +29,50 @@ class ArchiveStrategy:
     ----------
     X, F, violation : ndarray
         Candidates, their objectives, and the sum of what they violate.
-    most_infeasible : int
-        Candidates that are kept while none is feasible.
+    size : ndarray
+        Lengths of the box.
     """
 
-    def __init__(self, X: Array, F: Array, violation: Array, most_infeasible: int = 10) -> None:
-        self.most_infeasible = most_infeasible
+    def __init__(self, X: Array, F: Array, violation: Array, size: Array) -> None:
+        self.size = size
+        self.step = 0.2  # of the box
         self._keep(X, F, violation)
 
+    @property
+    def feasible(self) -> bool:
+        """Return whether a candidate was found that violates nothing."""
+        return bool(self.violation[0] <= 0)
+
     def take(self, X: Array, F: Array, violation: Array) -> None:
-        """Let candidates enter that nothing in the archive dominates."""
-        if (self.violation[0] <= 0) and (violation > 0).all():
-            return
-        everything = (
-            np.vstack([self.X, X]),
-            np.vstack([self.F, F]),
-            np.append(self.violation, violation),
-        )
-        self._keep(*everything)
+        """Let a child enter that nothing in the archive dominates, and learn the length of steps.
+
+        All are tables of one row.
+        """
+        growth = 1.25  # of the step where a child enters; a fourth of it is lost where none does
+        shortest = 2e-3
+        longest = 0.5
+        if self.feasible:
+            enters = violation[0] <= 0 and not (F[0] >= self.F).all(axis=1).any()
+        else:
+            enters = violation[0] < self.violation[0]
+        if not enters:
+            self.step = max(shortest, self.step * growth**-0.25)
+        else:
+            self.step = min(longest, self.step * growth)
+        if enters or not self.feasible:
+            self._keep(
+                np.vstack([self.X, X]),
+                np.vstack([self.F, F]),
+                np.append(self.violation, violation),
+            )
 
     def _keep(self, X: Array, F: Array, violation: Array) -> None:
+        few = 3  # candidates that are kept while none is feasible
         rows = np.flatnonzero(violation <= 0)
         if len(rows):
             rows = rows[moocore.is_nondominated(F[rows])]
         else:
-            rows = np.argsort(violation, kind="stable")[: self.most_infeasible]
+            rows = np.argsort(violation, kind="stable")[:few]
         self.X = X[rows]
         self.F = F[rows]
         self.violation = violation[rows]
@@ -62,26 +82,27 @@ class ArchiveStrategy:
         # the nearest is the candidate itself
         self._room = np.sort(distance, axis=1)[:, 1:3].sum(axis=1)
 
-    def child(self, size: Array, differences: float, random: np.random.Generator) -> Array:
+    def child(self, differences: float, random: np.random.Generator) -> Array:
         """A child in the box's units, which may lie beyond the box."""
-        shortest = -3.0  # powers of ten, as shares of the box
-        longest = -0.5
+        spread = 0.2  # standard deviation of the logarithm to base 10 of the lengths of steps
         count = len(self.X)
         parent, rival = random.integers(count, size=2)
-        if count > 3 and self._room[rival] > self._room[parent]:
+        if self.feasible and count > 3 and self._room[rival] > self._room[parent]:
             parent = rival
-        child = self.X[parent].copy()
-        step = 10 ** random.uniform(shortest, longest)
-        moved = random.random(len(child)) < 0.5
-        child += np.where(moved, step * size * random.standard_normal(len(child)), 0.0)
+        moved = random.random(len(self.size)) < 0.5
+        if random.random() < 0.5:
+            moved[:] = True
+        step = self.step * 10 ** random.normal(0.0, spread)
+        normal = random.standard_normal(len(self.size))
+        child = self.X[parent] + np.where(moved, step * self.size * normal, 0.0)
         if count > 2 and random.random() < differences:
             one, other = random.integers(count, size=2)
-            child += random.uniform(-1, 1) * (self.X[one] - self.X[other])
+            child = child + random.uniform(-1, 1) * (self.X[one] - self.X[other])
         return child
 
 
 def archive_es(
-    function: Any, seed: int, budget: int, first: int = 10, differences: float = 0.5
+    function: Any, seed: int, budget: int, first: int = 5, differences: float = 0.3
 ) -> None:
     """Ask a problem's recorded function for candidates until its budget is spent.
 
@@ -103,9 +124,9 @@ def archive_es(
     lower, upper = function.lower, function.upper
     X = random.uniform(lower, upper, (first, len(lower)))
     F, violations = function(X)
-    archive = ArchiveStrategy(X, F, np.maximum(violations, 0.0).sum(axis=1))
+    archive = ArchiveStrategy(X, F, np.maximum(violations, 0.0).sum(axis=1), upper - lower)
     while True:
-        child = archive.child(upper - lower, differences, random)
+        child = archive.child(differences, random)
         child = np.where(child < lower, 2 * lower - child, child)
         child = np.where(child > upper, 2 * upper - child, child)
         child = np.clip(child, lower, upper)[None]

@@ -1,6 +1,6 @@
 """A search by a surrogate: Gaussian processes of all objectives and violations, for few candidates.
 
-Each objective and each violation has a Gaussian process with a Matern kernel (scikit-learn). Among
+Each objective and each violation has a Gaussian process with a Matern kernel [2]_. Among
 random candidates near the archive, between its members and over the box, the next one is that whose
 optimistic values (mean less one standard deviation) add the most hypervolume, times how likely it
 keeps the limits. Of more than two objectives a random weighted Chebyshev norm stands in place of
@@ -9,18 +9,22 @@ the hypervolume [1]_.
 References
 ----------
 .. [1] Knowles, IEEE Transactions on Evolutionary Computation 10, 2006, pp. 50-66.
+.. [2] Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, chapters 2, 4 and 5.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field
-from math import ceil
+from math import ceil, sqrt
 from typing import Any
 
 import moocore
 import numpy as np
+from numpy.linalg import LinAlgError
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
+from scipy.optimize import minimize
+from scipy.spatial.distance import cdist
 from scipy.stats import norm, qmc
 from threadpoolctl import threadpool_limits
 
@@ -29,9 +33,76 @@ _FAILED = 1e30
 """Values from here up are those of candidates that failed."""
 
 
+class GaussianProcess:
+    """A Gaussian process in the unit box, with a Matern kernel of smoothness 5/2 and noise.
+
+    Parameters
+    ----------
+    U : ndarray, shape (n, size)
+        Where values are known.
+    values : ndarray, shape (n,)
+        The values, of mean 0 and standard deviation 1 or so.
+    logarithms : ndarray, optional
+        Logarithms of the variance, of a length for each coefficient, and of the noise's variance;
+        they are the likeliest ones, found from these or from a usual start.
+    fit : bool
+        Whether the likeliest are to be found, or those that are given stay.
+    """
+
+    def __init__(
+        self, U: Array, values: Array, logarithms: Array | None = None, fit: bool = True
+    ) -> None:
+        size = U.shape[1]
+        usual = np.concatenate([[0.0], np.full(size, np.log(0.5)), [np.log(1e-4)]])
+        bounds = np.log([(1e-2, 1e3), *[(0.05, 20.0)] * size, (1e-7, 1.0)])
+        self.U = U
+        self._values = values
+        self.logarithms = usual if logarithms is None else logarithms
+        if fit:
+            squares = (U[:, None] - U) ** 2
+            result = minimize(
+                self._misfit, self.logarithms, args=(squares,), jac=True, method="L-BFGS-B",
+                bounds=bounds, options={"maxiter": 50},
+            )  # fmt: skip
+            self.logarithms = np.clip(result.x, *bounds.T)
+        covariance = self._kernel(U) + np.exp(self.logarithms[-1]) * np.eye(len(U))
+        self._factor = cho_factor(covariance, lower=True)
+        self._weights = cho_solve(self._factor, values)
+
+    def predict(self, rows: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation at rows of the unit box, without the noise."""
+        across = self._kernel(rows)
+        explained = solve_triangular(self._factor[0], across.T, lower=True)
+        variance = np.exp(self.logarithms[0]) - (explained**2).sum(axis=0)
+        return across @ self._weights, np.sqrt(np.maximum(variance, 1e-12))
+
+    def _kernel(self, rows: Array) -> Array:
+        lengths = np.exp(self.logarithms[1:-1])
+        root = sqrt(5) * cdist(rows / lengths, self.U / lengths)
+        return np.exp(self.logarithms[0] - root) * (1 + root + root**2 / 3)
+
+    def _misfit(self, logarithms: Array, squares: Array) -> tuple[float, Array]:
+        """Negative logarithm of the likelihood, less a constant, and its gradient."""
+        variance, *inverse, noise = np.exp(logarithms * ([1] + [-2] * squares.shape[2] + [1]))
+        scaled = squares * inverse
+        root = np.sqrt(5 * scaled.sum(axis=2))
+        decay = variance * np.exp(-root)
+        kernel = decay * (1 + root + root**2 / 3)
+        try:
+            factor = cho_factor(kernel + noise * np.eye(len(kernel)), lower=True)
+        except LinAlgError:
+            return 1e10, np.zeros_like(logarithms)
+        weights = cho_solve(factor, self._values)
+        misfit = self._values @ weights / 2 + np.log(np.diag(factor[0])).sum()
+        outer = np.outer(weights, weights) - cho_solve(factor, np.eye(len(kernel)))
+        by_length = (outer * decay * (1 + root) * 5 / 3)[..., None] * scaled
+        slopes = [(outer * kernel).sum(), *by_length.sum(axis=(0, 1)), noise * np.trace(outer)]
+        return float(misfit), -np.array(slopes) / 2
+
+
 @dataclass
 class Surrogate:
-    """Gaussian processes of some columns; how long their lengths are is found anew at times.
+    """Gaussian processes of some columns of values, whose lengths are found anew at times.
 
     Parameters
     ----------
@@ -40,35 +111,25 @@ class Surrogate:
     """
 
     refit: int = 10
-    kernels: dict[int, Any] = field(default_factory=dict)
+    found: dict[int, Array] = field(default_factory=dict)
     used: int = 0
 
     def predict(self, U: Array, values: Array, rows: Array) -> tuple[Array, Array]:
         """Mean and standard deviation of each column of values at rows of the unit box."""
-        found = [self._of(column, U, values[:, column], rows) for column in range(values.shape[1])]
+        pairs = [self._of(column, U, values[:, column], rows) for column in range(values.shape[1])]
         self.used += 1
-        means, deviations = (np.column_stack(several) for several in zip(*found))
+        means, deviations = (np.column_stack(several) for several in zip(*pairs))
         return means, deviations
 
     def _of(self, column: int, U: Array, values: Array, rows: Array) -> tuple[Array, Array]:
-        # not at the top: scikit-learn is an extra
-        from sklearn.gaussian_process import GaussianProcessRegressor
-        from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
-
+        farthest = 5.0  # standard deviations: what is beyond is bad, however bad
         middle = float(values.mean())
         scale = float(values.std()) or 1.0
-        scaled = np.clip((values - middle) / scale, -5.0, 5.0)
-        kernel = self.kernels.get(column)
-        if kernel is None:
-            lengths = Matern(np.full(U.shape[1], 0.5), (0.05, 20.0), nu=2.5)
-            kernel = ConstantKernel(1.0, (1e-2, 1e3)) * lengths + WhiteKernel(1e-4, (1e-7, 1.0))
-        anew = column not in self.kernels or self.used % self.refit == 0
-        options: Any = {"optimizer": "fmin_l_bfgs_b" if anew else None, "random_state": 0}
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a length at its bound
-            model = GaussianProcessRegressor(kernel, **options).fit(U, scaled)
-            self.kernels[column] = model.kernel_
-            means, deviations = model.predict(rows, return_std=True)
+        scaled = np.clip((values - middle) / scale, -farthest, farthest)
+        anew = self.used % self.refit == 0
+        model = GaussianProcess(U, scaled, self.found.get(column), fit=anew)
+        self.found[column] = model.logarithms
+        means, deviations = model.predict(rows)
         return means * scale + middle, deviations * scale
 
 
@@ -149,8 +210,12 @@ def _next(
     chosen = list[int]()
     front = F[best]
     corner = _corner(F[feasible], front)
-    for _ in range(together):
+    ends_every = 5  # times: an end of the front adds little area, and is what many look for
+    for turn in range(surrogate.used, surrogate.used + together):
         gain = _gain(front, corner, optimistic, random) * keeps
+        if turn % ends_every == 0:
+            end = optimistic[:, turn // ends_every % objectives]
+            gain = (end.max() - end) * keeps
         gain[chosen] = -np.inf
         chosen.append(int(np.argmax(gain)))
         front = np.vstack([front, optimistic[chosen[-1]]])

@@ -228,7 +228,11 @@ class GivenFunction(ProblemFunction):
 
     def _is_pair(self, result: tuple[Any, Any]) -> bool:
         """Return whether a tuple of two is objectives with violations, not two objectives."""
-        return bool(self.constraints) or (isinstance(result[1], list | tuple) and not result[1])
+        second = result[1]
+        empty = getattr(second, "size", None) == 0 or (
+            isinstance(second, list | tuple) and not second
+        )
+        return bool(self.constraints) or empty
 
     def _shaped(self, values: Any, shape: tuple[int, ...], what: str) -> Array:
         if values is None or (0 in shape and np.size(values) == 0):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from quietarm.ocp import Front, Record, Solver, Sqp
+from quietarm.ocp import Front, PointToPoint, Record, Solver, Sqp
+from quietarm.ocp.checks import instance
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.solvers.choice import stated_solver
 from quietarm.studies.answers.read_answers import format_of, load_front, load_plans
@@ -21,6 +22,7 @@ def open_file(path: Path) -> MoveByHand:
         return MoveByHand.of_plan(library.plan(**middle), library=library, solver=solver)
     if format_of(path) == f"quietarm-{Front.kind}":
         front = load_front(path)
+        instance("task", front.task, PointToPoint)  # a front of a function has none
         refuse_peaks(str(path), front.objectives)
         coefficients = front.points[0].coefficients
         begun = MoveByHand(

@@ -392,7 +392,7 @@ def parse_sides(text: str) -> float | tuple[float, ...]:
         values = tuple(float(number) for number in text.split(","))
     except ValueError:
         raise ValueError(f"{text!r} is no list of numbers; give them as -1,-1,0") from None
-    return values if len(values) > 1 else values[0]
+    return values if len(values) != 1 else values[0]
 
 
 def parse_objectives(text: str) -> tuple[str, ...]:

@@ -200,7 +200,7 @@ def test_the_example_of_a_robot_plans_through_its_waypoints(run_python):
 
 def test_no_example_is_left_untested():
     others = [page for page in PAGES if page != "problems"]  # tests/metaheuristics/problems
-    assert sum(len(blocks(page, "python")) for page in others) == 27
+    assert sum(len(blocks(page, "python")) for page in others) == 30
     languages = re.findall(r"^```(\w+)$", "".join(PAGES.values()), re.MULTILINE)
     assert set(languages) == {"console", "python", "sh", "text"}
 
@@ -334,3 +334,18 @@ def test_the_moves_of_the_page_are_learned_from(run_python, follow):
     printed = " ".join(follow("learn-0")[0].split())
     answer = said.partition(" and ")[0]  # of which the frequency has all
     assert printed.startswith(answer)
+
+
+@pytest.mark.slow
+def test_the_examples_of_simulators_find_and_save_fronts(run_python):
+    pytest.importorskip("mujoco")
+    arm, machine, energy = blocks("simulators", "python")
+    printed = run_python(arm.replace("evaluations=200", "evaluations=40"))
+    front = Front.load("arm.json")
+    residual, cheapest = front.smallest_residual().residual, front.cheapest().energy
+    assert printed == f"{1e3 * residual:.1f} mm, {cheapest:.4f} J\n"
+    assert front.infeasible > 0  # the arm touched the post
+    printed = run_python(machine)
+    assert printed.startswith("30 candidates, ")
+    assert run_python(machine) == printed  # from its state, without a new measurement
+    assert run_python(energy).startswith("sway of single-link: ")

@@ -16,6 +16,7 @@ from quietarm.ocp import (
     evaluate_coefficients,
     task_difference,
 )
+from quietarm.ocp.checks import instance
 from quietarm.ocp.objectives import refuse_peaks
 from quietarm.ocp.rest import is_at_rest
 from quietarm.ocp.simulation.mesh import default_steps
@@ -130,6 +131,7 @@ def moves_of(answers: Answers, known_points: KnownPoints | None = None) -> list[
         if isinstance(answer, Front) and not answer.points:
             raise ValueError(f"{label}: {answer.why_empty()}")
         if isinstance(answer, Front):
+            instance("task", answer.task, PointToPoint)  # a front of a function has none
             refuse_peaks(label, answer.objectives)
         for group in groups:
             if _belong_together(next(iter(group.values())), answer):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -60,7 +61,7 @@ def draw_function_fronts(
 
 def facts_of(fronts: Sequence[Front]) -> str:
     """What was searched, and by what."""
-    function = fronts[0].task
+    function: Any = fronts[0].task
     return (
         f"{described(fronts[0].record.method)}: function {function.name}, "
         f"{counted(function.size, 'coefficient')}"

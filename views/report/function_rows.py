@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from quietarm.metaheuristics.spread import hypervolumes
 from quietarm.ocp import Front
@@ -24,7 +25,8 @@ def function_lines(fronts: Sequence[Front]) -> list[str]:
             f"{front.failed} failed{broken}",
             *_chosen_points(front),
         ]
-    lines.append(f"values are those that the function {fronts[0].task.name} gave")
+    function: Any = fronts[0].task
+    lines.append(f"values are those that the function {function.name} gave")
     if len(fronts) > 1 and len({front.reference for front in fronts}) == 1:
         lines.append(
             f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to its "

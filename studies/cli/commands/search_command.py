@@ -13,7 +13,7 @@ import click
 
 from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.named_method import POLISH
-from quietarm.metaheuristics.run_search import DEFAULT_OF_FUNCTIONS, SECONDS_OF_CANDIDATE
+from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE, default_of_function
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies.answers.read_answers import load_front
@@ -209,7 +209,13 @@ def _function(given: Given) -> _Asked:
                 f"{path} is for a front of a move; of a function give a .json, .csv or a picture"
             )
     given.function.load()  # what is wrong with the file is said before anything else
-    method = given.method if given.typed("method") else DEFAULT_OF_FUNCTIONS
+    method = (
+        given.method
+        if given.typed("method")
+        else default_of_function(
+            given.evaluations, given.population or given.generations or given.start_front
+        )
+    )
     return _Asked(given.function, method, given.pick("lower", "upper"))
 
 

@@ -77,6 +77,7 @@ OTHERS = {
     "repair": "midway", "delta": 0.01, "objective_crowding": False, "coefficient_crowding": False,
     "replaced": 3, "first_step": 0.3, "step": 1e-5, "continuation": False,
     "gradient_every": 3, "gradient_points": 4, "gradient_iterations": 2, "solver_tolerance": 1e-6,
+    "first": 7, "differences": 0.4, "training": 90, "pool": 500,
 }  # fmt: skip
 
 

@@ -233,7 +233,6 @@ def test_the_path_of_a_candidate_is_that_of_its_plan():
 
 
 def test_a_surrogate_finds_with_few_candidates_what_others_do_not():
-    pytest.importorskip("sklearn")
     found = {
         method: qa.search(limited, **BOX, constraints=["wall"], evaluations=40, algorithm=method)
         for method in ("gp", "nsga2")

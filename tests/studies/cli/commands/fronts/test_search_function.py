@@ -79,7 +79,11 @@ def test_what_is_wrong_is_said_in_one_line(refused, line, words):
 def test_commands_that_need_a_move_say_so(refused, call):
     line = "search --function simulator.py:boxed --evaluations 30 --method es --output a.json"
     assert call(line)[0] == 0
-    for command in ("front --polish a.json", "explore a.json --no-browser", "bench a.json"):
+    for command in (
+        "front --polish a.json",
+        "explore a.json --no-browser",
+        "bench a.json --output b",
+    ):
         assert "has no plant and no task" in refused(command)
 
 
