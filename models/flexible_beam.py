@@ -58,7 +58,8 @@ class FlexibleBeam(Plant):
             positive = name in ("omega", "length", "mass_per_length")
             if value < 0 or (positive and value == 0):
                 least = "more than 0" if positive else "0 or more"
-                raise ValueError(f"{name} is {value:g}; give {least}")
+                unit = self.units()[name].strip("-")
+                raise ValueError(f"{name} is {f'{value:g} {unit}'.strip()}; give {least}")
         # A longer beam [m] was typed in other units.
         longest = 100.0
         if self.length > longest:

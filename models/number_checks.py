@@ -56,8 +56,15 @@ def finite(name: str, value: Any, unit: str = "", most: float = math.inf, why: s
     if not math.isfinite(number):
         raise ValueError(f"{name} is {value}; give a finite {wanted}")
     if abs(number) > most:
-        raise ValueError(f"{name} is {number:g}; give at most {most:g}{why and f' ({why})'}")
+        largest = _with_unit(most, unit)
+        raise ValueError(
+            f"{name} is {_with_unit(number, unit)}; give at most {largest}{why and f' ({why})'}"
+        )
     return number
+
+
+def _with_unit(number: float, unit: str) -> str:
+    return f"{number:g} {unit}".strip()
 
 
 def _no_truth_value(value: Any) -> Any:
@@ -115,7 +122,7 @@ def positive(name: str, value: Any, unit: str = "", most: float = math.inf, why:
     """A positive finite number as a float."""
     number = finite(name, value, unit)
     if number <= 0:
-        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give a positive number")
+        raise ValueError(f"{name} is {_with_unit(number, unit)}; give a positive number")
     return finite(name, number, unit, most, why)
 
 
@@ -123,7 +130,7 @@ def not_negative(name: str, value: Any, unit: str = "") -> float:
     """A finite number of 0 or more as a float."""
     number = finite(name, value, unit)
     if number < 0:
-        raise ValueError(f"{name} is {f'{number:g} {unit}'.strip()}; give 0 or more")
+        raise ValueError(f"{name} is {_with_unit(number, unit)}; give 0 or more")
     return number
 
 

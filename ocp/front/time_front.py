@@ -7,6 +7,7 @@ energy in durations at even shares. All of them keep the task's limits and its b
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
@@ -185,6 +186,35 @@ def time_front(
     InfeasibleTaskError, SolverFailedError
         When no fastest move is found.
     """
+    *_, front = growing_time_front(
+        task,
+        longest=longest,
+        points=points,
+        residual_limit=residual_limit,
+        bound=bound,
+        seed=seed,
+        solver=solver,
+        report=report,
+    )
+    return front
+
+
+def growing_time_front(
+    task: PointToPoint,
+    *,
+    longest: float | None = None,
+    points: int = 9,
+    residual_limit: float | None = None,
+    bound: float | None = None,
+    seed: int = 0,
+    solver: Solver = Sqp(),
+    report: Progress = no_report,
+) -> Iterator[TimeFront]:
+    """Yield the front of `time_front` with each further duration, the fastest move's first.
+
+    Whoever is stopped so keeps what was found until then. Arguments and errors are those of
+    `time_front`.
+    """
     if task.band is None:
         raise ValueError(
             "the time of a front is until the tip stays within a band, and the task has none; give "
@@ -210,6 +240,17 @@ def time_front(
     failures = list[str]()
     guess = fastest.coefficients
     report(1, points)
+
+    def front() -> TimeFront:
+        record = replace(
+            fastest.record,
+            method="durations",
+            settings={"points": points, "longest": longest, **solver.stated},
+            seconds=time.perf_counter() - began,
+        )
+        return TimeFront(fastest.task, fastest.profile, _falling(found), record, tuple(failures))
+
+    yield front()
     for number, duration in enumerate(np.linspace(shortest, longest, points)[1:].tolist(), 2):
         try:
             plan = plan_move(
@@ -225,13 +266,7 @@ def time_front(
             guess = plan.coefficients
             found.append(_point_of(plan))
         report(number, points)
-    record = replace(
-        fastest.record,
-        method="durations",
-        settings={"points": points, "longest": longest, **solver.stated},
-        seconds=time.perf_counter() - began,
-    )
-    return TimeFront(fastest.task, fastest.profile, _falling(found), record, tuple(failures))
+        yield front()
 
 
 def _point_of(plan: Plan) -> TimedPoint:

@@ -307,7 +307,10 @@ def parse_drive(texts: Iterable[str], joint: str, recorded: Recorded | None = No
             values[name] = _of_drive_number(name, text, joint)
         else:
             raise ValueError(has_no("a drive", "number", name, (*DRIVE_NUMBERS, *DRIVE_WORDS)))
-    return Drive(**{"recorded": recorded} | values) if values else None
+    if not values:
+        return None
+    values.setdefault("recorded", recorded)
+    return Drive(**values)
 
 
 def _of_drive_number(name: str, text: str, joint: str) -> float:

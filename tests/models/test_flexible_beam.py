@@ -89,8 +89,8 @@ def test_a_plan_needs_the_second_mode_and_hardly_the_third():
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"omega": 0}, "omega is 0; give more than 0"),
-        ({"tip_mass": -0.1}, "tip_mass is -0.1; give 0 or more"),
+        ({"omega": 0}, "omega is 0 rad/s; give more than 0"),
+        ({"tip_mass": -0.1}, "tip_mass is -0.1 kg; give 0 or more"),
         ({"mode_count": 9}, "mode_count is 9; give a whole number"),
     ],
 )

@@ -278,7 +278,7 @@ def test_an_export_format(follow, refused, done):
     assert "--axis is for g-code, not for csv" in refused(
         f"export plan.json {own} --output move.csv --axis B"
     )
-    assert "rate is 2000; give a number from 1 up to 1000" in refused(
+    assert "rate is 2000 Hz; give a number from 1 up to 1000 Hz" in refused(
         f"export plan.json {own} --output move.nc --rate 2000"
     )
     code = file_of("An export format")[1]

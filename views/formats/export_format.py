@@ -120,11 +120,14 @@ class ExportSetting:
         if kind is int:
             least = -(10**9) if self.least == -inf else int(self.least)
             return whole(self.name, value, least, None if self.most == inf else int(self.most))
-        number = finite(self.name, value, self.unit.strip("-"))
+        unit = self.unit.strip("-")
+        number = finite(self.name, value, unit)
         if not self.least <= number <= self.most:
             least = f" from {self.least:g}" if self.least > -inf else ""
             most = f" up to {self.most:g}" if self.most < inf else ""
-            raise ValueError(f"{self.name} is {number:g}; give a number{least}{most}")
+            stated = f"{number:g} {unit}".strip()
+            wanted = f"a number{least}{most} {unit}".strip()
+            raise ValueError(f"{self.name} is {stated}; give {wanted}")
         return number
 
 

@@ -241,14 +241,15 @@ class _Entries:
             most = abs(most)
         if not most > 0:
             raise ValueError(
-                f"{bound.most} of {self.joint} in limits is {most:g}; give a positive number"
+                f"{bound.most} of {self.joint} in limits is {most:g} {unit}; give a positive number"
             )
         sizes = {bound.most: most}
         if bound.least and self.table.get(bound.least) is not None:
             least = self.number(bound.least, unit)
             if not least < 0:
                 raise ValueError(
-                    f"{bound.least} of {self.joint} in limits is {least:g}; give a negative number"
+                    f"{bound.least} of {self.joint} in limits is {least:g} {unit}; give a negative "
+                    "number"
                 )
             sizes[bound.least] = -least
         return sizes

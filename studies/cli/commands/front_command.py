@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.front.time_front import TIME_AND_ENERGY, time_front
+from quietarm.ocp.front.time_front import TIME_AND_ENERGY, TimeFront, growing_time_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.given import Given
+from quietarm.studies.cli.interrupted import InterruptedCommandError
 from quietarm.studies.cli.options import (
     BOUND,
     ROBOT_PATH,
@@ -149,17 +152,27 @@ def _of_time(given: Given) -> None:
     longest = given.typed("duration")
     task = given.read_task(**({} if longest else {"duration": 1.0}))  # the search begins from it
     points = given.points if given.typed("points") else _DURATIONS
-    with counting(points, "durations") as report:
-        solution = time_front(
-            task,
-            longest=task.duration if longest else None,
-            points=points,
-            report=report,
-            solver=given.read_solver(),
-            **given.pick("bound", "seed"),
-        )
-    files = answer_files(given.output, lambda: pictures.time_front_figure(solution), solution)
-    finish(files, *time_front_lines(solution), *given.remarks)
+    solution: TimeFront | None = None
+    trouble = None
+    try:
+        with counting(points, "durations") as report:
+            for grown in growing_time_front(
+                task,
+                longest=task.duration if longest else None,
+                points=points,
+                report=report,
+                solver=given.read_solver(),
+                **given.pick("bound", "seed"),
+            ):
+                solution = grown  # the last one has all durations, or those until a stop
+    except KeyboardInterrupt as stop:
+        if solution is None:
+            raise
+        done = f"{len(solution.points)} of {points} points are found and kept"
+        trouble = InterruptedCommandError(f"interrupted: {done}", stop)
+    assert solution is not None  # the fastest move's at least
+    files = answer_files(given.output, partial(pictures.time_front_figure, solution), solution)
+    finish(files, *time_front_lines(solution), *given.remarks, trouble=trouble)
 
 
 def _polish(given: Given) -> None:

@@ -117,7 +117,7 @@ def test_a_robot_has_the_records_of_all_joints(tmp_path):
         ({"polarity": 0}, "polarity is 0; give 1 or -1"),
         ({"period": 0.00125}, "period is 1.25 ms, which 60C2h cannot hold; give a multiple of"),
         ({"period": 0.0301}, "period is 30.1 ms, which 60C2h cannot hold; give up to 25.5 ms"),
-        ({"period": 1.0}, "period is 1; give a number from 0.0001 up to 0.255"),
+        ({"period": 1.0}, "period is 1 s; give a number from 0.0001 up to 0.255 s"),
         ({"increments": 1e12}, "and a record holds 2147483647; give fewer increments"),
     ],
 )

@@ -3,7 +3,10 @@
 import csv
 import json
 import re
+import signal
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -173,3 +176,32 @@ def test_a_fastest_move_without_a_jerk_limit_takes_one_and_says_so(done):
     assert plan.motion.peak_jerk <= 1.001 * plan.task.jerk_limit
     assert f"the jerk {plan.task.jerk_limit:g} rad/s^3 is taken, as none is given" in out
     assert "warning" not in out
+
+
+@pytest.mark.parametrize("stopped_at", [1, 3])
+def test_a_front_of_time_that_is_stopped_keeps_its_points(call, monkeypatch, stopped_at):
+    line = (
+        "front linear-axis --target 0.3 --duration 0.6 --acceleration-limit 9 --jerk-limit 900 "
+        "--band 1mm --points 4 --objectives time,energy --output time.json --output time.csv"
+    )
+    asked = []
+
+    def planned(task, *_, **__):
+        asked.append(task)
+        if len(asked) == stopped_at:
+            raise KeyboardInterrupt(signal.SIGTERM)
+        if len(asked) == 1:  # the fastest move
+            task = replace(task, duration=0.4)
+        plan = qa.evaluate_coefficients(task, [])
+        return SimpleNamespace(plan=plan) if len(asked) == 1 else plan
+
+    for name in ("fastest_move", "plan_move"):
+        monkeypatch.setattr(f"quietarm.ocp.front.time_front.{name}", planned)
+    code, _, err = call(f"{line} --quiet")
+    assert code == 128 + signal.SIGTERM
+    if stopped_at == 1:
+        assert not Path("time.json").exists()
+        return
+    assert "interrupted: 2 of 4 points are found and kept" in err
+    assert len(TimeFront.load("time.json").points) == 2
+    assert len(Path("time.csv").read_text().splitlines()) == 1 + 2
