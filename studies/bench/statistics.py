@@ -296,10 +296,9 @@ def p_against_best(results: Results, problem: str, column: str = "missing") -> d
     best = min(medians, key=lambda name: medians[name])
     table = pairs_on(results, problem, column)
     p_values = dict[str, float]()
-    for row in table.itertuples(index=False):
-        one, other, p = str(row.one), str(row.other), float(row.p_holm)
+    for one, other, p in zip(table["one"], table["other"], table["p_holm"]):
         if best in (one, other):
-            p_values[other if one == best else one] = p
+            p_values[str(other if one == best else one)] = float(p)
     return p_values
 
 

@@ -312,12 +312,12 @@ def test_the_machine_of_the_page_is_the_one_that_was_recorded(run_python, follow
     printed, _, fastest, *_ = [follow(f"machine-{number}")[0] for number in range(5)]
     (shown,) = blocks("machine", "text")
     of_page, now = (
-        [[float(x) for x in re.findall(r"\d+\.\d+", line)] for line in text.splitlines()[:5]]
+        [[float(x) for x in re.findall(r"\d+\.\d+", line)] for line in text.splitlines()[:6]]
         for text in (shown, printed)
     )
     for before, after in zip(of_page, now, strict=True):
         assert after == pytest.approx(before, rel=2e-3)
-    (_, low, high), _, (_, least, most), _ = (line[:3] for line in now[1:])
+    (_, low, high), _, (_, least, most), _ = (line[:3] for line in now[2:])
     assert low < 20.1 / (2 * math.pi) < high
     assert least < 0.01 < most
     duration = float(re.findall(r"duration of the first is ([\d.]+) s", PAGES["machine"])[0])

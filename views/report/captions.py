@@ -128,7 +128,7 @@ def caption_of_front(front: Front) -> str:
     cheapest = front.points[-1]
     worst = worst_of(front.judged(stillest))
     still = scenarios_words(stillest.residual, worst, front.task)
-    still = "at rest" if still == "rest" else still
+    still = "at rest" if still == "rest" else f"with {still}"
     words = f"{stillest.energy:.3g} J {still}{_further(front, stillest)}"
     if len(front.points) == 1:
         return f"One motion: {words}"
