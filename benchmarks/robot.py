@@ -310,6 +310,54 @@ def figure_10() -> str:
     )
 
 
+LOADS = (0.9, 0.95, 1.0, 1.05, 1.1)
+
+
+def figure_11() -> str:
+    task = move(uncertainty=qa.Uncertainty({"payload": 0.1}))
+
+    def truth(load: float) -> Truth:
+        robot = FlexibleRobot(urdf_of("ur5_robot.urdf"))
+        hinges = robot.add_bar("tool0", **(BAR | {"tip_mass": load * BAR["tip_mass"]}))
+        return Truth(robot, UR5_JOINTS, BAR["damping"], hinges)
+
+    return f"UR5, {_with_loads(task, truth)}"
+
+
+def figure_12() -> str:
+    geared = panda_with_bar(modes=2)
+    robot = qa.Robot(geared.urdf, geared.joints, geared.held, geared.beam, modes=2)
+    path = qa.GeometricPath.line(PANDA_START, PANDA_END)
+    uncertainty = qa.Uncertainty({"payload": 0.1})
+    task = qa.PointToPoint(robot.along(path), target=1.0, duration=1.2, uncertainty=uncertainty)
+
+    def truth(load: float) -> Truth:
+        in_mujoco = FlexibleRobot(urdf_of("panda.urdf"))
+        bar = STEEL_BAR | {"tip_mass": load * STEEL_BAR["tip_mass"]}
+        hinges = in_mujoco.add_bar("panda_hand", **bar)
+        return Truth(in_mujoco, robot.joints, bar["damping"], hinges, held=robot.held)
+
+    return f"Panda, {_with_loads(task, truth)}"
+
+
+def _with_loads(task: qa.PointToPoint, truth: Callable[[float], Truth]) -> str:
+    """What is left with other loads by a robust plan, a plan for one load, and the cycloid."""
+    plans = {
+        "plan with errors": qa.plan_move(task, qa.CycloidPolynomial(8)),
+        "plan without": qa.plan_move(task.certain),
+        "cycloid": qa.evaluate_coefficients(task.certain, []),
+    }
+    left = {
+        name: [measured(plan, truth(load))[0] for load in LOADS] for name, plan in plans.items()
+    }
+    share = max(left["plan with errors"]) / max(left["cycloid"][0], left["cycloid"][-1])
+    words = [
+        f"{name} ({plans[name].energy:.2f} J) {', '.join(f'{one:.3g}' for one in row)} mm"
+        for name, row in left.items()
+    ]
+    return f"load +-10 %, at most a third of the cycloid's: {share:.2f}; {'; '.join(words)}"
+
+
 FIGURES = {
     2: figure_2,
     3: figure_3,
@@ -319,6 +367,8 @@ FIGURES = {
     8: figure_8,
     9: figure_9,
     10: figure_10,
+    11: figure_11,
+    12: figure_12,
 }
 """By their numbers. 1 and 4 are tests: tests/ocp/test_golden_answers.py, tests/ocp/planning."""
 

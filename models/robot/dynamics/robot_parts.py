@@ -83,7 +83,7 @@ class RobotParts:
 
     @property
     def made_of(self) -> tuple[str]:
-        """What it is made of, all of it, for `kept_functions`."""
+        """Parts that say all that it is, for `kept_functions`."""
         return (self.digest,)
 
     def __hash__(self) -> int:
