@@ -194,7 +194,7 @@ class Search:
         )
         self._known = {told.number: told for told in self._resumed()}
         self._told = list[Told]()
-        self._pending = np.empty((0, len(problem.lower)))
+        self._pending: Array = np.empty((0, len(problem.lower)))
         self._values: list[Told | None] = []
         self._failure: BaseException | None = None
         self._over = False
@@ -356,7 +356,7 @@ class Search:
         self._pending = self._pending[:0]
         if isinstance(asked, BaseException):
             self._failure = asked
-            self._raise_failure()
+            raise asked
         if asked is None:
             self._over = True
             return False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -145,9 +146,8 @@ class Front(Answer):
         """The class of a file's content: a front of a function has that in place of a task."""
         if "function" not in content:
             return cls
-        from quietarm.ocp.front.function_front import FunctionFront
-
-        return FunctionFront
+        # by its name: that file needs this one
+        return import_module("quietarm.ocp.front.function_front").FunctionFront
 
     @property
     def tip_unit(self) -> str:

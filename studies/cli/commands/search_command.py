@@ -222,7 +222,7 @@ def _function(given: Given) -> _Asked:
 def _search(asked: _Asked, seed: int) -> Front:
     from quietarm.metaheuristics import search
 
-    what = asked.what.load() if isinstance(asked.what, FunctionOfFile) else asked.what
+    what: Any = asked.what.load() if isinstance(asked.what, FunctionOfFile) else asked.what
     return search(what, algorithm=asked.method, seed=seed, **asked.options)
 
 
