@@ -94,7 +94,8 @@ class Batch:
         # equations of many terms take as long a row in larger blocks, and longer to build
         sizes = (1, 4, 8) if simulation.plant.steps_at_once == 1 else (1, 4)
         self._derivatives = RowFunction(build, sizes)
-        self._arrivals = RowFunction(partial(compile_arrivals, simulation), sizes)
+        # of one size, since scenarios that join a problem would have another one built
+        self._arrivals = RowFunction(partial(compile_arrivals, simulation), sizes[1:2])
 
     @cached_property
     def _steps(self) -> int:
