@@ -146,19 +146,22 @@ def _plan_without_limits(request: Request) -> Plan | None:
 
 def _plan_of_held(request: Request) -> Plan | None:
     """The same within a residual limit that is held: what can be had is soon found."""
-    brief = replace(request, solver=_briefly(request.solver))
-    for profile in (request.profile, more_terms(request.task)):
-        plan = _try(replace(brief, profile=profile))
-        if plan is None:
-            continue
-        kept = {
-            name: value
-            for name, value in plan.record.settings.items()
-            if name not in brief.solver.stated
-        }
-        plan = plan.restated(settings=kept | dict(request.solver.stated))
-        return plan if profile == request.profile else _state_terms(plan)
-    return None
+    brief = replace(request, solver=_briefly(request.solver), quick=True)
+    more = more_terms(request.task)
+    plan = _try(brief)
+    if plan is not None:
+        return _of_solver(plan, request.solver)
+    try:
+        return _state_terms(_of_solver(plan_along(replace(brief, profile=more)), request.solver))
+    except InfeasibleTaskError:
+        return None
+
+
+def _of_solver(plan: Plan, solver: Solver) -> Plan:
+    """The plan whose record states a solver's options, and not those of its brief one."""
+    brief = _briefly(solver).stated
+    kept = {name: value for name, value in plan.record.settings.items() if name not in brief}
+    return plan.restated(settings=kept | dict(solver.stated))
 
 
 def _briefly(solver: Solver) -> Solver:
