@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts
-from quietarm.ocp.planning.least_time import Fit, fit_spline, least_time, shaped_duration
+from quietarm.ocp.planning.least_time import SplineFit, fit_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.remedies import has_a_plan, stated_limit
@@ -111,7 +111,7 @@ def _is_held(request: Request) -> bool:
     return request.task.uncertainty is not None and not request.adapts and request.bound is None
 
 
-def _fit(request: Request) -> Fit | None:
+def _fit(request: Request) -> SplineFit | None:
     """The motion on a spline that comes nearest to the limits; None where there is none."""
     if not request.task.limits or request.bound is not None:
         return None
@@ -121,7 +121,7 @@ def _fit(request: Request) -> Fit | None:
         return None
 
 
-def _try_fit(request: Request, fit: Fit) -> Plan | None:
+def _try_fit(request: Request, fit: SplineFit) -> Plan | None:
     """The plan on a spline from its motion; None where no motion was found."""
     return _try_along(request, fit.profile, fit.excess.coefficients)
 

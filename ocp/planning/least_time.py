@@ -111,7 +111,7 @@ def least_time(
     return best
 
 
-class Fit(NamedTuple):
+class SplineFit(NamedTuple):
     """The spline on which a motion comes nearest to a task's limits in its duration."""
 
     profile: JointSpline
@@ -123,18 +123,18 @@ class Fit(NamedTuple):
         return self.excess.holds and self.excess.share <= 0
 
 
-def fit_spline(task: PointToPoint, residual_limit: float, bound: float | None) -> Fit:
+def fit_spline(task: PointToPoint, residual_limit: float, bound: float | None) -> SplineFit:
     """The spline whose motion keeps a task's limits in its duration, or comes nearest.
 
     ValueError where nothing limits the joint, or no motion is so slow that it keeps the limits.
     """
     knots = _knots_at(_shaped_rigid_motion(task))
-    fits: list[Fit] = []
+    fits: list[SplineFit] = []
     for _ in range(1 + _ROUNDS):
         profile = JointSpline(knots)
         excess = _Durations(task, profile, residual_limit, bound).excess(task.duration)
         least = min((fit.excess.share for fit in fits if fit.excess.holds), default=math.inf)
-        fits.append(Fit(profile, excess))
+        fits.append(SplineFit(profile, excess))
         if fits[-1].keeps or (excess.holds and excess.share > _HOPELESS * least):
             break
         knots = _knots_along(profile, excess.coefficients)

@@ -34,7 +34,7 @@ class Excess(NamedTuple):
     holds: bool
 
     def is_beyond(self, share: float) -> bool:
-        """Whether the limits surely have to be wider by more than a share."""
+        """Return whether the limits surely have to be wider by more than a share."""
         # that far off linear programs need not agree with the motion
         hopeless = 1.0
         return self.share > (share if self.holds else hopeless)
