@@ -21,24 +21,32 @@ from numpy.typing import ArrayLike
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts
-from quietarm.ocp.planning.least_time import fitting_spline, least_time, shaped_duration
+from quietarm.ocp.planning.least_time import SplineFit, fit_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
-from quietarm.ocp.planning.remedies import has_a_plan
+from quietarm.ocp.planning.remedies import has_a_plan, stated_limit
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
+from quietarm.ocp.planning.worst_scenarios import with_even_scenarios
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.ocp.solvers.problem import Solution
+from quietarm.ocp.solvers.least_excess import least_excess
+from quietarm.ocp.solvers.problem import Program, Solution
+from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import PointToPoint
 
 SIX = CycloidPolynomial()
+_BEYOND = 0.03
+"""Share by which the limits have to be wider by linear programs, above which no robust plan is
+looked for."""
 _OF_ONE_MODE = 18
 _OF_SEVERAL_MODES = 24
 """Terms within limits. Where one mode swings for more than seven periods 24 come 2 % nearer to the
 floor, but the solver may take minutes."""
+_BRIEF = 120
+"""Iterations where no motion is to be seen as such soon; those that are found take 10 to 60."""
 CHOSEN = "chosen_terms"
 OF_SIX = "energy_of_six_terms"
 """What a plan's record says of them."""
@@ -53,8 +61,10 @@ def choose_profile(task: PointToPoint) -> CycloidPolynomial:
 
 
 def more_terms(task: PointToPoint) -> CycloidPolynomial:
-    """The number of terms that a plant takes within limits."""
-    return CycloidPolynomial(_OF_ONE_MODE if task.plant.modes == 1 else _OF_SEVERAL_MODES)
+    """The number of terms that a plant takes within limits, or an uncertain one without them."""
+    # without limits 24 terms are rough: a robust plan of them takes twice as long, and saves less
+    few = task.plant.modes == 1 or (task.uncertainty is not None and not task.limits)
+    return CycloidPolynomial(_OF_ONE_MODE if few else _OF_SEVERAL_MODES)
 
 
 def plan_on_chosen_profile(request: Request) -> Plan:
@@ -76,24 +86,87 @@ def _plan_on_first_that_will_do(request: Request) -> Plan:
     if plan is not None and (plan.residual_limit or 0.0) <= request.residual_limit:
         return plan
     # no motion was found, or the default residual limit was out of reach
-    on_spline = _plan_on_spline(request)
+    fit = _fit(request)
+    on_spline = None if fit is None or not fit.keeps else _try_fit(request, fit)
     if on_spline is not None and (
         plan is None or _worst_residual(on_spline) < _worst_residual(plan)
     ):
         return on_spline
     if plan is not None:
         return plan
+    # to look for what would do with other limits takes a minute, and a duration is soon found
+    is_beyond = fit is not None and fit.excess.is_beyond(_BEYOND)
+    if _is_held(request) and (is_beyond or not request.task.limits):
+        raise InfeasibleTaskError(_beyond(request))
     # where the residual limit adapts, the stand-in was tried with these terms before
     last = replace(request, has_stand_in=not request.adapts)
     return _state_terms(plan_along(last.along(more_terms(request.task))))
 
 
+def _is_held(request: Request) -> bool:
+    """Whether a plan for an uncertain plant has to keep a band or a stated residual limit.
+
+    Within a box of the coefficients a longer duration need not help: that is looked into.
+    """
+    return request.task.uncertainty is not None and not request.adapts and request.bound is None
+
+
+def _fit(request: Request) -> SplineFit | None:
+    """The motion on a spline that comes nearest to the limits; None where there is none."""
+    if not request.task.limits or request.bound is not None:
+        return None
+    try:
+        return fit_spline(request.task, request.residual_limit, None)
+    except ValueError:  # no motion is so slow that it keeps the limits
+        return None
+
+
+def _try_fit(request: Request, fit: SplineFit) -> Plan | None:
+    """The plan on a spline from its motion; None where no motion was found."""
+    return _try_along(request, fit.profile, fit.excess.coefficients)
+
+
+def _beyond(request: Request) -> str:
+    """What is said of limits that no motion comes near to."""
+    task = request.task
+    limits = Program.of(task, SIX).within(request.residual_limit).limits
+    stated = ", ".join(stated_limit(task, limit) for limit in limits)
+    return f"found no motion of {more_terms(task).amount} with {stated}"
+
+
 def _plan_without_limits(request: Request) -> Plan | None:
     """The plan of six terms, or of more where these find no motion."""
+    if _is_held(request):
+        return _plan_of_held(request)
     with suppress(SolverFailedError):
         return plan_along(request)
     plan = _try(replace(request, profile=more_terms(request.task)))
     return None if plan is None else _state_terms(plan)
+
+
+def _plan_of_held(request: Request) -> Plan | None:
+    """The same within a residual limit that is held: what can be had is soon found."""
+    brief = replace(request, solver=_briefly(request.solver), quick=True)
+    more = more_terms(request.task)
+    plan = _try(brief)
+    if plan is not None:
+        return _of_solver(plan, request.solver)
+    try:
+        return _state_terms(_of_solver(plan_along(replace(brief, profile=more)), request.solver))
+    except InfeasibleTaskError:
+        return None
+
+
+def _of_solver(plan: Plan, solver: Solver) -> Plan:
+    """The plan whose record states a solver's options, and not those of its brief one."""
+    brief = _briefly(solver).stated
+    kept = {name: value for name, value in plan.record.settings.items() if name not in brief}
+    return plan.restated(settings=kept | dict(solver.stated))
+
+
+def _briefly(solver: Solver) -> Solver:
+    """The solver with at most so many iterations, where what it needs is a third of them."""
+    return replace(solver, iterations=min(_BRIEF, solver.iterations))
 
 
 def _plan_within_limits(request: Request) -> Plan | None:
@@ -105,10 +178,19 @@ def _plan_within_limits(request: Request) -> Plan | None:
     began = time.perf_counter()
     profile = request.profile
     uncertain = request.task.uncertainty is not None
+    if _is_held(request):
+        problem = request.along(profile).problem()
+        if least_excess(problem, profile.plain).is_beyond(_BEYOND):
+            return None
+    best = _try_along(request, profile) if uncertain else None
+    if best is not None:  # the energy of six terms, of the nominal plant, is no measure for it
+        return _state_terms(best, {"starts": request.starts}).restated(
+            seconds=time.perf_counter() - began
+        )
     six = _solve_with_six(request)
-    best = _try_along(request, profile)
-    six_is_cheaper = best is None or (not uncertain and six.energy < best.energy)
-    if six.status.solved and six_is_cheaper:
+    if not uncertain:
+        best = _try_along(request, profile)
+    if six.status.solved and (best is None or six.energy < best.energy):
         padded = np.pad(six.coefficients, (0, profile.size - SIX.size))
         from_six = _try_along(request, profile, padded)
         if best is None or (from_six is not None and from_six.energy < best.energy):
@@ -131,19 +213,6 @@ def _solve_with_six(request: Request) -> Solution:
     with_six = replace(nominal, profile=SIX)
     (six,) = best_of_starts([with_six.problem()], [with_six.guesses], request.solver)
     return six
-
-
-def _plan_on_spline(request: Request) -> Plan | None:
-    """The plan on a spline that keeps the limits; None where none was found."""
-    if not request.task.limits or request.bound is not None:
-        return None
-    try:
-        fitted = fitting_spline(request.task, request.residual_limit, None)
-    except ValueError:  # no motion is so slow that it keeps the limits
-        return None
-    if fitted is None:
-        return None
-    return _try_along(request, *fitted)
 
 
 def _try_along(
@@ -177,9 +246,25 @@ def _with_a_duration(error: InfeasibleTaskError, request: Request) -> Infeasible
     """The error with the duration that would do, where a longer one does."""
     motion = f"motion of {more_terms(request.task).amount}"
     what = error.what.replace(motion, f"{motion} or on a spline", 1)
-    if not request.task.limits or request.bound is not None:
+    if request.bound is not None:
         return InfeasibleTaskError(error.what)
-    return InfeasibleTaskError(what, _remedy(request))
+    if request.task.limits:
+        return InfeasibleTaskError(what, _remedy(request))
+    if _is_held(request):
+        return InfeasibleTaskError(error.what, _longer(request))
+    return InfeasibleTaskError(error.what)
+
+
+def _longer(request: Request, growth: float = 1.5, most: int = 5) -> str:
+    """The first of some longer durations that will do without limits, in words; or nothing."""
+    task = request.task
+    for power in range(1, most + 1):
+        duration = f"{task.duration * growth**power:.3g}"
+        longer = with_even_scenarios(replace(task, duration=float(duration)))
+        lasting = request.on(longer).along(more_terms(task))
+        if has_a_plan(lasting.problem(), lasting.profile.plain, _briefly(request.solver)):
+            return f"a duration of {duration} s will do"
+    return ""
 
 
 def _remedy(request: Request) -> str:
@@ -195,8 +280,11 @@ def _remedy(request: Request) -> str:
     except ValueError:  # nothing limits the joint, or no task takes so long
         return ""
     size = request.residual_limit
+    task = with_even_scenarios(task)
     try:
-        least = least_time(task, size, None, 1e-2, rounds=0, most_steps=2 * most_steps)
+        least = least_time(
+            task, size, None, 1e-2, rounds=0, most_steps=2 * most_steps, roughly=True
+        )
     except ValueError:
         return may_do
     duration = _rounded_up(least.duration)

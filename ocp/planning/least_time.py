@@ -74,11 +74,12 @@ def least_time(
     tolerance: float,
     rounds: int = _ROUNDS,
     most_steps: int = MOST_SOLVER_STEPS,
+    roughly: bool = False,
 ) -> LeastTime:
     """The least time of a task within its limits, to a share of it, after so many rounds of knots.
 
-    ValueError where a move as long as its limits ask for takes more steps than the solver has, or
-    than is wanted.
+    Roughly it is by the solver's nodes and the task's scenarios alone. ValueError where a move as
+    long as its limits ask for takes more steps than the solver has, or than is wanted.
     """
     shaped = _shaped_rigid_motion(task)
     low = rigid_duration(task) or shaped.duration / _GROWTH
@@ -95,6 +96,8 @@ def least_time(
             durations = following
         if gain < _GAIN:
             break
+    if roughly:
+        return best
     finer = _FINER * best.steps
     for _ in range(_WORST_ROUNDS):
         uncertain = durations.with_worst_cases(best)
@@ -108,23 +111,34 @@ def least_time(
     return best
 
 
-def fitting_spline(
-    task: PointToPoint, residual_limit: float, bound: float | None
-) -> tuple[JointSpline, Array] | None:
-    """A spline and coefficients that keep a task's limits in its duration; None if none do."""
-    shaped = _shaped_rigid_motion(task)
-    knots = _knots_at(shaped)
-    least = math.inf
+class SplineFit(NamedTuple):
+    """The spline on which a motion comes nearest to a task's limits in its duration."""
+
+    profile: JointSpline
+    excess: Excess
+
+    @property
+    def keeps(self) -> bool:
+        """Whether its motion keeps every limit."""
+        return self.excess.holds and self.excess.share <= 0
+
+
+def fit_spline(task: PointToPoint, residual_limit: float, bound: float | None) -> SplineFit:
+    """The spline whose motion keeps a task's limits in its duration, or comes nearest.
+
+    ValueError where nothing limits the joint, or no motion is so slow that it keeps the limits.
+    """
+    knots = _knots_at(_shaped_rigid_motion(task))
+    fits: list[SplineFit] = []
     for _ in range(1 + _ROUNDS):
         profile = JointSpline(knots)
         excess = _Durations(task, profile, residual_limit, bound).excess(task.duration)
-        if excess.holds and excess.share <= 0:
-            return profile, excess.coefficients
-        if excess.holds and excess.share > _HOPELESS * least:
-            return None
-        least = excess.share if excess.holds else least
+        least = min((fit.excess.share for fit in fits if fit.excess.holds), default=math.inf)
+        fits.append(SplineFit(profile, excess))
+        if fits[-1].keeps or (excess.holds and excess.share > _HOPELESS * least):
+            break
         knots = _knots_along(profile, excess.coefficients)
-    return None
+    return min(fits, key=lambda fit: (not fit.excess.holds, fit.excess.share))
 
 
 def shaped_duration(task: PointToPoint) -> float:

@@ -133,7 +133,7 @@ def unmet(
         if otherwise:
             ended = f"{ended.partition(';')[0]}; {otherwise}"
         return SolverFailedError(f"none of {len(statuses)} starts was solved: {ended}")
-    bounds = ", ".join(_stated(task, limit) for limit in limits if limit.size < np.inf)
+    bounds = ", ".join(stated_limit(task, limit) for limit in limits if limit.size < np.inf)
     several = "removing any single one of these limits does not help, so widen several"
     feasible = _offers(task, limits, least) or several
     return InfeasibleTaskError(
@@ -158,7 +158,7 @@ def _offer(task: PointToPoint, limit: Limit, peak: float) -> str:
     return f"{limit.label} limit {limit.describe(peak)}"
 
 
-def _stated(task: PointToPoint, limit: Limit) -> str:
+def stated_limit(task: PointToPoint, limit: Limit) -> str:
     """A limit in words; a residual limit that follows from a band with the band."""
     if limit.name == RESIDUAL and limit.size == 0:
         return "the tip at rest on arrival"

@@ -40,3 +40,14 @@ def with_moved_scenarios(
     is_far = (np.abs(known[:, None] - added).max(axis=2) > near).all(axis=1)
     kept = known[is_corner | is_far] * largest
     return task.with_samples([*kept.tolist(), *scenarios])
+
+
+def with_even_scenarios(task: PointToPoint) -> PointToPoint:
+    """The task with the middles between no error and the corners of its ranges as scenarios too.
+
+    They stand for the worst cases where these are not looked for. A task that is certain stays.
+    """
+    if task.uncertainty is None:
+        return task
+    corners = np.array(task.scenarios[1:])
+    return task.with_samples([*corners.tolist(), *(corners / 2).tolist()])

@@ -94,8 +94,9 @@ class Batch:
         # equations of many terms take as long a row in larger blocks, and longer to build
         sizes = (1, 4, 8) if simulation.plant.steps_at_once == 1 else (1, 4)
         self._derivatives = RowFunction(build, sizes, simulation.kept_as("derivatives"))
+        # of one size, since scenarios that join a problem would have another one built
         self._arrivals = RowFunction(
-            partial(compile_arrivals, simulation), sizes, simulation.kept_as("arrivals")
+            partial(compile_arrivals, simulation), sizes[1:2], simulation.kept_as("arrivals")
         )
 
     @cached_property

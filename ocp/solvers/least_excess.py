@@ -33,6 +33,12 @@ class Excess(NamedTuple):
     coefficients: Array
     holds: bool
 
+    def is_beyond(self, share: float) -> bool:
+        """Return whether the limits surely have to be wider by more than a share."""
+        # that far off linear programs need not agree with the motion
+        hopeless = 1.0
+        return self.share > (share if self.holds else hopeless)
+
 
 @on_one_thread
 def least_excess(problem: Program, start: Array, reach: float = 3.0) -> Excess:

@@ -76,6 +76,30 @@ def test_a_move_refused_for_its_duration_says_which_one_will_do():
     assert plan_move(replace(axis, duration=offered)).residual < 1e-6
 
 
+GANTRY = PointToPoint(
+    LinearAxis(omega1=4.5 * 2 * pi, zeta1=0.007, mass=83.0, load=15.0, friction=50.0),
+    0.8,
+    0.81,
+    uncertainty=Uncertainty({"frequency": 0.05}),
+    band=1e-4,
+    speed_limit=1.5,
+    acceleration_limit=7.0,
+    jerk_limit=150.0,
+)
+FAR_LINK = PointToPoint(
+    SingleLinkManipulator(), pi / 6, 0.3, uncertainty=Uncertainty({"frequency": 0.05}), band=1e-6
+)
+
+
+@pytest.mark.parametrize("task", [GANTRY, FAR_LINK], ids=["within limits", "without"])
+def test_a_band_out_of_reach_is_refused_soon_with_a_duration_that_will_do(task):
+    with pytest.raises(InfeasibleTaskError, match=r"a duration of \S+ s will do") as error:
+        plan_move(task)
+    duration = re.search(r"a duration of (\S+) s", str(error.value))
+    plan = plan_move(replace(task, duration=float(duration[1])))
+    assert plan.worst.residual <= 1.001 * task.band_limit
+
+
 def test_more_terms_keep_a_residual_limit_in_the_worst_case_that_six_cannot():
     task = PointToPoint(
         SingleLinkManipulator(omega=21.0), 0.82, 0.6, uncertainty=Uncertainty({"frequency": 0.1})
