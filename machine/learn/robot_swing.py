@@ -356,7 +356,7 @@ class _Fit:
         swings = np.exp(np.outer(self._time, values))
         columns = list[Array]()
         for mode in range(len(values)):
-            shape = np.multiply.outer(swings[:, mode], rows[:, mode])
+            shape: ComplexArray = np.outer(swings[:, mode], rows[:, mode])
             columns += [shape.real.ravel(), -shape.imag.ravel()]
         design = np.column_stack([self._without_mean(column) for column in columns])
         values_left = self._without_mean((self._values / self._size).ravel())
@@ -424,7 +424,7 @@ class _Fit:
 
     def _design(self, values: ComplexArray) -> Array:
         """Columns by which every signal is met: two a swing, from the first sample on."""
-        swings = np.exp(np.outer(self._time - self._time[0], values))
+        swings: ComplexArray = np.exp(np.outer(self._time - self._time[0], values))
         columns = np.stack([swings.real, -swings.imag], axis=2).reshape(len(swings), -1)
         return np.column_stack([columns, self._still])
 

@@ -187,8 +187,15 @@ class RobotEvidence(Evidence):
         self._before = TipModes(plan.task.plant, plan.task.target)
         super().__init__(plan, history, ())
 
-    by_joint = False
-    beyond = 0.0
+    @property
+    def by_joint(self) -> bool:
+        """False: the swing is read after arrival."""
+        return False
+
+    @property
+    def beyond(self) -> float:
+        """0: what rings beside the modes is said in notes."""
+        return 0.0
 
     # The springs
 
@@ -284,7 +291,9 @@ class RobotEvidence(Evidence):
         """The robot with what was learned."""
         return Identified(self.plant, self.estimates, {}, (), {}, (), versions())
 
-    def seen_share(self, plant: Plant) -> float | None:
+    def seen_share(  # pyright: ignore[reportIncompatibleVariableOverride]
+        self, plant: Plant
+    ) -> float | None:
         """None: how far the tip swings during the move is not seen."""
         return None
 
