@@ -1,0 +1,21 @@
+"""Learning of robots' plans in MuJoCo: benchmarks/learning_robots.py in a shortened form."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+
+
+@pytest.mark.slow
+def test_one_move_tells_a_wrong_frequency_beside_a_gear_that_the_model_lacks():
+    pytest.importorskip("mujoco")
+    from learning_robots import Case, course
+
+    before, after = course(Case("ur5", -0.1, "gear", "acceleration"), moves=1)
+
+    left = 5  # column of what a move leaves [mm]
+    assert float(before[left]) == pytest.approx(10.1, abs=0.1)  # of the wrong model, in MuJoCo
+    assert float(after[left]) < float(before[left]) / 10
+    assert float(after[left]) < float(after[left + 1])  # what was said of it
