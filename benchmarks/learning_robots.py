@@ -54,7 +54,7 @@ NOISE = {"acceleration": 0.02, "torques": 0.05}
 DURATION = {"ur5": 1.0, "panda": 0.8}
 """Of the moves [s]."""
 BASE = {"ur5": PEDESTAL, "panda": Base(stiffness=(2e5, 2e5), damping=(100.0, 100.0), height=0.5)}
-"""A base that the model lacks: it rocks at 10 Hz under the UR5, at 18 under the Panda."""
+"""A base that the model lacks: it rocks at 10 Hz under the UR5, at 15 under the Panda."""
 GEAR = {"ur5": ("shoulder_lift_joint", 2e4, 20.0), "panda": ("panda_joint2", 3e4, 20.0)}
 """A gear that the model lacks: its joint, stiffness [N m/rad] and damping."""
 COLUMNS = ("robot", "frequency", "lacks", "signal", "move", "left_mm", "predicted_mm", "energy_j",

@@ -35,7 +35,7 @@ from quietarm.ocp.uncertainty import with_values
 @takes(plan=Plan, solver=Solver)
 def learn(
     plan: Plan,
-    recordings: Sequence[Recording] | Sequence[RobotRecording],
+    recordings: Sequence[Recording | RobotRecording],
     *,
     dearer: float = 0.02,
     solver: Solver = Sqp(),
@@ -116,7 +116,7 @@ def learn(
 
 
 def _evidence(
-    plan: Plan, recordings: Sequence[Recording]
+    plan: Plan, recordings: Sequence[Recording | RobotRecording]
 ) -> tuple[Evidence, list[ReadMove], list[str]]:
     """What the moves of a plan of one joint tell, how they were read, and what was mended."""
     recordings, notes = without_glitches(checked_recordings(recordings))

@@ -76,7 +76,7 @@ def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> Rob
     signal, values = recording.swinging
     if recording.positions is not None:
         signal, values = "positions", recording.positions
-    search = _Search(recording.time, values, _courses(plan, plant, signal), duration)
+    search = _StartSearch(recording.time, values, _courses(plan, plant, signal), duration)
     place, explained = search.best()
     if explained < _LEAST_MET[signal]:
         raise ValueError(
@@ -117,7 +117,7 @@ def _felt(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
     return [*way.felt(time, np.asarray(motion.angle), np.asarray(plant.robot.gravity)).T]
 
 
-class _Search:
+class _StartSearch:
     """The places of a recording, and how much of its signals a plan explains there."""
 
     def __init__(self, time: Array, values: Array, courses: Array, duration: float) -> None:

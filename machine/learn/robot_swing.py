@@ -63,7 +63,7 @@ class RobotSwing:
     notes : tuple of str
         How it was read.
     other : float
-        What of the signals is no swing of the modes, as a displacement of the tip [m].
+        How far the tip rings beside its modes [m]; 0 where torques are recorded.
     """
 
     measured: RecordedArrival
@@ -175,14 +175,18 @@ def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
     best = _with_rings(window)
     notes = list[str]()
     if best.rings:
+        notes.append(
+            "what the arm itself rings is not in the plan's model, and stays: describe a gear or a "
+            "base that gives in the robot's file"
+        )
         rings = " and ".join(f"{f:.2g} Hz with a damping of {z:.2g}" for f, z in best.rings)
         words = f"the arm itself rings after arrival, at {rings}: "
         later = _later(window)
         if later is not None and later.deviations.sum() < best.deviations.sum():
             best = later
-            notes.append(f"{words}the swing is read from {LATER:g} s after arrival on")
+            notes.insert(0, f"{words}the swing is read from {LATER:g} s after arrival on")
         else:
-            notes.append(f"{words}that is fitted beside the swing")
+            notes.insert(0, f"{words}that is fitted beside the swing")
     short = _shorter(best)
     if short is not None:
         longer, few = best.clearest, short.clearest
@@ -298,12 +302,17 @@ class _Fit:
     @cached_property
     def at_arrival(self) -> ComplexArray:
         """Swing of the tip by every mode at arrival."""
-        return self._projected(self.found)[0]
+        return self._projected(self.found)
 
-    @cached_property
+    @property
     def other(self) -> float:
-        """What of the swing the modes' shapes do not meet, as a displacement of the tip."""
-        return self._projected(self.found)[1]
+        """How far the tip rings beside its modes, at arrival [m]; 0 where torques are recorded."""
+        if self.window.recording.acceleration is None:
+            return 0.0
+        values = self._eigenvalues(self.found)[len(self._model) :]
+        by_signal = self._solved(self.found)[0][len(self._model) :]
+        sizes = np.linalg.norm(by_signal, axis=1) / np.abs(values) ** 2
+        return float((sizes * np.exp(-values.real * self._time[0])).sum())
 
     @cached_property
     def deviations(self) -> Array:
@@ -311,7 +320,7 @@ class _Fit:
         steps = 1e-4
         of_rates = np.zeros((len(self.at_arrival), len(self.found)), complex)
         for k, unit in enumerate(np.eye(len(self.found))):
-            ahead, _ = self._projected(self.found + steps * unit)
+            ahead = self._projected(self.found + steps * unit)
             of_rates[:, k] = (ahead - self.at_arrival) / steps
         by_rates = np.einsum("ij,jk,ik->i", of_rates, self._covariance, of_rates.conj()).real / 2
         design = self._design(self._eigenvalues(self.found))
@@ -356,7 +365,7 @@ class _Fit:
         swings = np.exp(np.outer(self._time, values))
         columns = list[Array]()
         for mode in range(len(values)):
-            shape = np.multiply.outer(swings[:, mode], rows[:, mode])
+            shape: ComplexArray = np.outer(swings[:, mode], rows[:, mode])
             columns += [shape.real.ravel(), -shape.imag.ravel()]
         design = np.column_stack([self._without_mean(column) for column in columns])
         values_left = self._without_mean((self._values / self._size).ravel())
@@ -424,7 +433,7 @@ class _Fit:
 
     def _design(self, values: ComplexArray) -> Array:
         """Columns by which every signal is met: two a swing, from the first sample on."""
-        swings = np.exp(np.outer(self._time - self._time[0], values))
+        swings: ComplexArray = np.exp(np.outer(self._time - self._time[0], values))
         columns = np.stack([swings.real, -swings.imag], axis=2).reshape(len(swings), -1)
         return np.column_stack([columns, self._still])
 
@@ -437,22 +446,18 @@ class _Fit:
         of_swings = sizes[: 2 * len(values)]
         return of_swings[0::2] + 1j * of_swings[1::2], left
 
-    def _projected(self, x: Array) -> tuple[ComplexArray, float]:
-        """Swings of the tip at arrival by mode, and what no mode has, by a tip's displacement."""
+    def _projected(self, x: Array) -> ComplexArray:
+        """Swings of the tip at arrival by mode."""
         values = self._eigenvalues(x)
         by_signal, _ = self._solved(x)
         rows = self.window.modes.rows_at(self._spread(values))
         since = float(self._time[0])
         found = np.zeros(rows.shape[1], complex)
-        missed = 0.0
         for c, modes in enumerate(self._clusters):
             shapes = rows[:, modes] / self._size[:, None]
-            weighed = by_signal[c] / self._size
-            sizes, *_ = np.linalg.lstsq(shapes, weighed, rcond=None)
-            rest = np.linalg.norm(weighed - shapes @ sizes) / np.linalg.norm(shapes, axis=0).max()
+            sizes, *_ = np.linalg.lstsq(shapes, by_signal[c] / self._size, rcond=None)
             found[modes] = sizes * np.exp(-values[c] * since)
-            missed = max(missed, float(rest))
-        return found, missed
+        return found
 
     def _spread(self, of_clusters: NDArray[Any]) -> NDArray[Any]:
         """What clusters have, by mode."""

@@ -87,7 +87,7 @@ def robot_evidence(
 
 
 def _evidence(plan: Plan, read: Sequence[ReadRobotMove]) -> RobotEvidence:
-    return RobotEvidence(plan, history_with(plan, [one.after.measured for one in read]))
+    return RobotEvidence(plan, history_with(plan, [one.after.measured for one in read]), read)
 
 
 def _read(
@@ -181,14 +181,24 @@ class RobotEvidence(Evidence):
         That was executed last.
     history : MoveHistory
         All moves, the last one with it.
+    read : sequence of ReadRobotMove
+        What was read of the last one.
     """
 
-    def __init__(self, plan: Plan, history: MoveHistory) -> None:
+    def __init__(self, plan: Plan, history: MoveHistory, read: Sequence[ReadRobotMove]) -> None:
+        self._moves = read
         self._before = TipModes(plan.task.plant, plan.task.target)
         super().__init__(plan, history, ())
 
-    by_joint = False
-    beyond = 0.0
+    @property
+    def by_joint(self) -> bool:
+        """False: the swing is read after arrival."""
+        return False
+
+    @property
+    def beyond(self) -> float:
+        """How far the tip rings beside its modes, where that is seen [m]."""
+        return max(one.after.other for one in self._moves)
 
     # The springs
 
@@ -284,7 +294,9 @@ class RobotEvidence(Evidence):
         """The robot with what was learned."""
         return Identified(self.plant, self.estimates, {}, (), {}, (), versions())
 
-    def seen_share(self, plant: Plant) -> float | None:
+    def seen_share(  # pyright: ignore[reportIncompatibleVariableOverride]
+        self, plant: Plant
+    ) -> float | None:
         """None: how far the tip swings during the move is not seen."""
         return None
 
@@ -301,6 +313,31 @@ class RobotEvidence(Evidence):
         unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
         power = float((left[seen] ** 2).sum())
         return power / (power + 2 * float((unsure[seen] ** 2).sum())) if seen.any() else 1.0
+
+    # How far the tip swings: its modes move it in several directions
+
+    def _reach(self, amplitudes: NDArray[np.complex128]) -> float:
+        """How far the tip gets from where it rests by swings of all modes [m]."""
+        seconds = 4 / float(self.modes.frequencies[0])
+        times = np.linspace(0, seconds, 800)
+        swings: NDArray[np.complex128] = np.exp(np.outer(self.modes.values, times))
+        tips = (self.modes.tips * amplitudes) @ swings
+        return float(np.linalg.norm(tips.real, axis=0).max())
+
+    @property
+    def left(self) -> float:
+        """How far the tip swung after the last move: the mean of its recordings."""
+        return float(np.mean([self._reach(swings) for swings in self._swings[-1]]))
+
+    @property
+    def by_frequency(self) -> float:
+        """How far by what the springs change."""
+        return self._reach(self._frequency_share)
+
+    @property
+    def repeatable(self) -> float:
+        """How far by what remains beside that, and beside what was wanted."""
+        return self._reach(self._left[-1] - self._frequency_share - self._wanted)
 
     # Moves that differ
 

@@ -65,7 +65,7 @@ class TipWay:
         return frames[:, :, 3].T - rest[:, None] + displaced
 
     def felt(self, time: Array, places: Array, gravity: Array) -> Array:
-        """What an accelerometer at the tip feels where nothing swings [m/s^2].
+        """Accelerations that a sensor at the tip feels where nothing swings [m/s^2].
 
         Along the axes of the tip's frame in which it moves, shape (samples, axes).
 

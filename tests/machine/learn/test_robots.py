@@ -71,8 +71,9 @@ def test_an_arm_that_rings_itself_is_told_from_the_swing_and_said(plant):
     amplitude = 4e-3 * np.exp(-2.0j)
     swing, found = read(*swinging(plant, amplitude, ring=0.6))
     assert abs(swing - amplitude) < 0.05 * abs(amplitude)
-    (note,) = found.notes
+    note, stays = found.notes
     assert "the arm itself rings after arrival" in note
+    assert "and stays" in stays
     assert "fitted beside the swing" in note or "read from 0.65 s" in note
 
 
