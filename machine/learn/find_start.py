@@ -94,18 +94,18 @@ def find_start(plan: Plan, recording: Recording) -> Start:
 
 def best_search(
     plan: Plan, time: Array, values: Array, signal: str, enough: float = 0.98
-) -> tuple[Search, float, float]:
+) -> tuple[StartSearch, float, float]:
     """The search by the plant's frequencies, or by others that meet a tip's swing better.
 
     With its place and the share that is explained there. No other frequency is tried from a share
     on that is enough.
     """
-    found = list[tuple[float, float, Search]]()
+    found = list[tuple[float, float, StartSearch]]()
     for factor in (1.0, *np.geomspace(0.7, 1.4, 21)):
         motion = _with_frequencies(plan, float(factor))
         if motion is None:
             break
-        search = Search(time, values, courses_of(motion, signal), plan.task.duration)
+        search = StartSearch(time, values, courses_of(motion, signal), plan.task.duration)
         lag, explained = search.best(1.0)
         found.append((explained, lag, search))
         if signal in ("angle", "torque") or explained > enough:
@@ -155,7 +155,7 @@ def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
     if start.signal != "angle" or recording.tip is None:
         return
     values = recording.tip.reshape(len(recording.time), -1)[:, 0]
-    search = Search(recording.time, values, courses_of(plan.candidate, "angle"), plan.task.duration)
+    search = StartSearch(recording.time, values, courses_of(plan.candidate, "angle"), plan.task.duration)
     _, explained = search.refined(start.time)
     if 1 - explained < far_better * (1 - start.explained):
         raise ValueError(
@@ -175,7 +175,7 @@ def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
         motion = JudgedMotion.of_profile(task, move.profile, move.coefficients)
         if move.coefficients == plan.coefficients:
             continue
-        search = Search(recording.time, values, courses_of(motion, start.signal), task.duration)
+        search = StartSearch(recording.time, values, courses_of(motion, start.signal), task.duration)
         _, explained = search.refined(start.time)
         if 1 - explained < far_better * (1 - start.explained):
             raise ValueError(
@@ -193,7 +193,7 @@ def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
     if recording.tip is None:
         return None
     values = recording.tip.reshape(len(recording.time), -1)[:, 0]
-    search = Search(recording.time, values, courses_of(motion, "tip"), motion.task.duration)
+    search = StartSearch(recording.time, values, courses_of(motion, "tip"), motion.task.duration)
     lag, explained = search.best(1.0)
     if explained < enough:
         return None
@@ -228,7 +228,7 @@ def courses_of(motion: JudgedMotion, signal: str) -> Sequence[Array]:
     return [np.concatenate([np.zeros(resting), course]) for course in courses[signal]]
 
 
-class Search:
+class StartSearch:
     """The places of a recording, and how much of its signal a plan explains there.
 
     Parameters
