@@ -50,7 +50,7 @@ def test_one_axis_is_shown_as_a_table_and_too_short_a_move_says_so(done, folder)
 @pytest.mark.slow
 def test_every_cell_is_the_plan_of_its_move_by_command_and_in_python(call, done, folder):
     out = done(FEW + " --output few.png")
-    assert "4 of 4 have a plan" in out
+    assert "4 of 4 moves have a plan" in out
     found = dataset("few.zarr")
     assert found.energy.dims == ("target", "duration")
     assert found.energy.attrs["units"] == "J"
@@ -86,7 +86,7 @@ def test_parameters_are_axes_and_what_cannot_be_has_a_reason(done, folder):
         "sweep flexible-beam --set tip_mass=0,200g --target 60deg --duration 0.5,1 --quiet "
         "--torque-limit 0.6 --terms 6 --output payload.zarr --output payload.png"
     )
-    assert "infeasible 1 cells" in " ".join(out.split())
+    assert "infeasible 1 move" in " ".join(out.split())
     found = dataset("payload.zarr")
     meanings = found.status.attrs["flag_meanings"].split()
     assert meanings[int(found.status.sel(tip_mass=0.2, duration=0.5))] == "infeasible"
