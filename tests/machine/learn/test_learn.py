@@ -267,6 +267,18 @@ def test_moves_that_differ_are_averaged_and_said_not_to_repeat():
 
 
 @pytest.mark.slow
+def test_a_machine_that_changes_between_moves_is_said_to():
+    plan = a_plan()
+    first = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.4)])
+    assert not any("changes from move to move" in note for note in first.notes)
+    run = recording(first.plan, "tip", "angle", frequency=5.2, seed=1)
+    second = qa.learn(first.plan, [run])
+    (note,) = (note for note in second.notes if "changes from move to move" in note)
+    assert "it swung at 5.2 and 5.4 Hz" in note
+    assert note.endswith("by --error frequency=1.9%")  # half of 0.2 Hz in 5.3
+
+
+@pytest.mark.slow
 def test_a_plan_with_a_history_loads_to_an_equal_value(tmp_path):
     plan = a_plan()
     learned = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.2)])
