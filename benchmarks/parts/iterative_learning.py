@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from parts.drive.simulate import SetPoints
 from scipy.interpolate import BSpline
 from scipy.signal import cont2discrete, lfilter
-
-from parts.drive.simulate import SetPoints
 
 Array = np.ndarray
 SHAPES = 24

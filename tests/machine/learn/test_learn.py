@@ -416,7 +416,7 @@ WRONG = [
 @pytest.mark.parametrize(("kind", "signals"), WRONG)
 def test_the_recording_of_another_plan_is_refused(kind, signals):
     run = as_seen(executed(another_plan(kind), frequency=5.4), signals)
-    with pytest.raises(ValueError, match="^run: it is of another move: .*; give the recording of"):
+    with pytest.raises(ValueError, match=r"^run: it is of another move: .*; give the recording of"):
         qa.learn(a_plan(), [run])
 
 
@@ -425,7 +425,7 @@ def test_the_recording_of_another_plan_is_refused(kind, signals):
 def test_a_tip_that_goes_another_way_or_in_another_unit_is_refused(factor):
     signals = executed(a_plan(), frequency=5.4)
     run = as_seen(dict(signals, tip=factor * signals["tip"]), ["tip"])
-    with pytest.raises(ValueError, match="^run: it is of another move: "):
+    with pytest.raises(ValueError, match=r"^run: it is of another move: "):
         qa.learn(a_plan(), [run])
 
 
