@@ -417,13 +417,14 @@ def residual_over_moves(quick: bool) -> Picture:
                 for row in rows
                 if (row["machine"], row["case"], row["signals"]) == (name, case, signals)
             ]
-            moves = [int(row["move"]) for row in own]
-            left = [float(row["median_mm"]) for row in own]
+            columns = [name for name in rows[0] if name.startswith("mm_")]
+            moves = [int(name.removeprefix("mm_")) for name in columns]
+            left = [float(np.median([float(row[name]) for row in own])) for name in columns]
             largest += left
             how = qa.pictures.COLOURS[number]
             ax.plot(moves, left, "o-", color=how, label=label, markersize=4)
         ax.set_title(name, **TITLE)
-        ax.set(xlabel="moves learned from", ylabel="residual [mm]", xticks=range(5))
+        ax.set(xlabel="moves learned from", ylabel="residual [mm]", xticks=range(4))
         ax.grid(alpha=0.25)
         logarithmic(ax, largest, "y")
     legend_below(figure, axes, 2, 9)

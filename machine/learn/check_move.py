@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.machine.identify.fits.diagnosis import saturated
 from quietarm.machine.identify.identified import is_frequency
-from quietarm.machine.learn.find_start import Search, Start, best_search, courses_of
+from quietarm.machine.learn.find_start import StartSearch, Start, best_search, courses_of
 from quietarm.machine.recordings.recording import Recording, noise_of
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp.judged_motion import JudgedMotion
@@ -62,7 +62,7 @@ def check_move(plan: Plan, recording: Recording, start: Start, told: Mapping[str
         return start.time  # a sensor that sees the tip near its target alone
     motion = _motion(plan, told)
     most = _MOST_UNEXPLAINED[signal]
-    search = Search(
+    search = StartSearch(
         recording.time, values, courses_of(motion, _COURSES[signal]), plan.task.duration
     )
     place = start.time if signal == "angle" else search.best(1.0)[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
@@ -464,7 +465,34 @@ class Evidence:
 
     @property
     def doubts(self) -> list[str]:
-        """Whether moves repeat."""
+        """Whether moves repeat, and the machine stays what it is."""
+        return [*self._changes, *self._differences]
+
+    @property
+    def _changes(self) -> list[str]:
+        """That a frequency was another in another move of the history, clearly, in words."""
+        least = 0.01  # share of a frequency; less is what amplitude and friction make of it
+        clear = 5.0  # deviations
+        words = list[str]()
+        for name in (name for name in self.plant.measured if is_frequency(self.plant, name)):
+            telling = [part for part in self._parts if name in part.values]
+            if len(telling) < 2:
+                continue
+            low, high = (choose(telling, key=lambda p: p.values[name]) for choose in (min, max))
+            apart = high.values[name] - low.values[name]
+            unsure = float(np.hypot(low.deviations[name], high.deviations[name]))
+            if apart > max(least * high.values[name], clear * unsure):
+                share = 100 * apart / (high.values[name] + low.values[name])
+                words.append(
+                    f"warning: the machine changes from move to move: it swung at "
+                    f"{low.values[name] / tau:.4g} and {high.values[name] / tau:.4g} Hz, which no "
+                    f"correction foresees; make a robust plan, by --error frequency={share:.2g}%"
+                )
+        return words
+
+    @property
+    def _differences(self) -> list[str]:
+        """That the recordings of the last move differ, in words."""
         most = 0.5  # share of what is left, by which moves may differ
         beyond = 3.0  # deviations of the noise, by which they differ at any rate
         noise = beyond * float(np.sqrt(2) * self._of_one[-1].sum())

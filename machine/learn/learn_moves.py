@@ -183,7 +183,7 @@ class MovesOfMachine:
         told, left = self.told[:, mode], self.left[:, mode]
         noise = np.hypot(self.noise[:, mode], _OF_LARGE_SWINGS * np.abs(left)) + 1e-9
         # a plant that swings at omega is displaced by about the acceleration over omega squared
-        rate = float(np.min([value for name, value in self._rates.items()]))
+        rate = min(self._rates.values())
         size = 6 / rate**2  # 6: the peak acceleration of a cycloid over way and duration
         terms = columns.shape[1]
         basis = np.column_stack([told, columns]).astype(complex)

@@ -95,7 +95,10 @@ def _changed(learned: Learning) -> str:
 
 def _number(length: float, plant: Plant) -> str:
     """A displacement of the tip in mm, of one that turns in degrees: two digits."""
+    least = 1e-4
     value = 1e3 * length if plant.tip_unit == "m" else 180 / pi * length
+    if 0 < value < least:
+        return f"below {least}"
     return f"{value:.3g}" if value >= 1 else f"{value:.2g}"
 
 

@@ -267,6 +267,18 @@ def test_moves_that_differ_are_averaged_and_said_not_to_repeat():
 
 
 @pytest.mark.slow
+def test_a_machine_that_changes_between_moves_is_said_to():
+    plan = a_plan()
+    first = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.4)])
+    assert not any("changes from move to move" in note for note in first.notes)
+    run = recording(first.plan, "tip", "angle", frequency=5.2, seed=1)
+    second = qa.learn(first.plan, [run])
+    (note,) = (note for note in second.notes if "changes from move to move" in note)
+    assert "it swung at 5.2 and 5.4 Hz" in note
+    assert note.endswith("by --error frequency=1.9%")  # half of 0.2 Hz in 5.3
+
+
+@pytest.mark.slow
 def test_a_plan_with_a_history_loads_to_an_equal_value(tmp_path):
     plan = a_plan()
     learned = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.2)])
@@ -404,7 +416,7 @@ WRONG = [
 @pytest.mark.parametrize(("kind", "signals"), WRONG)
 def test_the_recording_of_another_plan_is_refused(kind, signals):
     run = as_seen(executed(another_plan(kind), frequency=5.4), signals)
-    with pytest.raises(ValueError, match="^run: it is of another move: .*; give the recording of"):
+    with pytest.raises(ValueError, match=r"^run: it is of another move: .*; give the recording of"):
         qa.learn(a_plan(), [run])
 
 
@@ -413,7 +425,7 @@ def test_the_recording_of_another_plan_is_refused(kind, signals):
 def test_a_tip_that_goes_another_way_or_in_another_unit_is_refused(factor):
     signals = executed(a_plan(), frequency=5.4)
     run = as_seen(dict(signals, tip=factor * signals["tip"]), ["tip"])
-    with pytest.raises(ValueError, match="^run: it is of another move: "):
+    with pytest.raises(ValueError, match=r"^run: it is of another move: "):
         qa.learn(a_plan(), [run])
 
 
