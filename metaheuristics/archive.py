@@ -6,13 +6,12 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib import metadata
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 from quietarm.metaheuristics.score import share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, Mark, PointToPoint, reference_corner
@@ -22,6 +21,9 @@ from quietarm.ocp.front.points import Entries
 from quietarm.ocp.front.searched_function import SearchedFunction
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities
 from quietarm.ocp.record import Record, versions
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
