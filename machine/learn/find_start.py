@@ -155,7 +155,9 @@ def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
     if start.signal != "angle" or recording.tip is None:
         return
     values = recording.tip.reshape(len(recording.time), -1)[:, 0]
-    search = StartSearch(recording.time, values, courses_of(plan.candidate, "angle"), plan.task.duration)
+    search = StartSearch(
+        recording.time, values, courses_of(plan.candidate, "angle"), plan.task.duration
+    )
     _, explained = search.refined(start.time)
     if 1 - explained < far_better * (1 - start.explained):
         raise ValueError(
@@ -175,7 +177,9 @@ def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
         motion = JudgedMotion.of_profile(task, move.profile, move.coefficients)
         if move.coefficients == plan.coefficients:
             continue
-        search = StartSearch(recording.time, values, courses_of(motion, start.signal), task.duration)
+        search = StartSearch(
+            recording.time, values, courses_of(motion, start.signal), task.duration
+        )
         _, explained = search.refined(start.time)
         if 1 - explained < far_better * (1 - start.explained):
             raise ValueError(
