@@ -36,6 +36,8 @@ CENTRE = 6
 CONTROL = "epsilon"
 CONTROL_SETTINGS = "points=50"
 DIFFERENCES = "slsqp"
+OWN_POPULATION = {"nsga2": 100, "gde3": 100, "moead-de": 100, "memetic": 50, "mo-cma-es": 30}
+"""Individuals that a method's label states with a thousand candidates."""
 KINDS = ("absolute", "copper", "stages", "motor-map", "integer")
 PAPER = ("nsga2-paper", "vepso")
 TARGETS = (50, 20, 10, 5, 2, 1)
@@ -572,7 +574,10 @@ def lines_over(
 
     def runs_at(method: str, terms: int, budget: int) -> dict[str, list[Run]]:
         spent = 0 if method == control else budget
-        runs_of = {name: results.of(method, spent, name) for name in results.problems(terms)}
+        label = method
+        if spent == 1_000 and method in OWN_POPULATION:
+            label = f"{method} population={OWN_POPULATION[method]}"
+        runs_of = {name: results.of(label, spent, name) for name in results.problems(terms)}
         return {Problem(name).move: runs for name, runs in runs_of.items() if runs}
 
     table = {

@@ -34,6 +34,8 @@ LADDER = (3, 5, 10, 50, 200)
 LONGEST = LADDER[-1]
 CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
 """Methods of candidates that are run in every cell of the map."""
+OWN_POPULATION = {"nsga2": 100, "gde3": 100, "moead-de": 100, "memetic": 50, "mo-cma-es": 30}
+"""Individuals of methods whose default would be smaller with few candidates."""
 SMALL = ("gde3", "moead-de")
 SMALL_POPULATION = (("population", 20),)
 """Of these with the smallest budget: a hundred individuals have ten generations there."""
@@ -45,6 +47,8 @@ LIMITED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
 """Methods that are run on moves with limits; small populations where candidates are few."""
 AT_FEW = ("nsga2", "gde3", "moead-de")
 """Searches of 20 individuals that are run with 200 candidates."""
+FOR_FEW = ("es", "gp")
+"""Searches without a population, made for few candidates."""
 AT_LARGE = ("gde3", "moead-de", "nsga2", "memetic", "slsqp")
 OF_KINDS = ("nsga2", "gde3", "moead-de", "memetic", "slsqp")
 PEAKS = ("peak_torque", "peak_deflection")
@@ -181,6 +185,13 @@ def centre(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
             yield Planned("centre", seed, Case(move), "epsilon:ipopt", None, (("points", 20),))
 
 
+def own(method: str, budget: int) -> tuple[tuple[str, Any], ...]:
+    """Return the population of a method with its usual settings, where few candidates change it."""
+    usual = 5_000
+    changes = budget < usual and method in OWN_POPULATION
+    return (("population", OWN_POPULATION[method]),) if changes else ()
+
+
 def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
     """Coefficients by budget: first two moves of every plant, the others when all else is done."""
     if not seed:
@@ -197,7 +208,7 @@ def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
             for move in moves:
                 case = Case(move, terms)
                 for method in CROSSED:
-                    yield Planned("crossing", seed, case, method, budget)
+                    yield Planned("crossing", seed, case, method, budget, own(method, budget))
                 for method in SMALL if budget == BUDGETS[0] else ():
                     yield Planned("crossing", seed, case, method, budget, SMALL_POPULATION)
 
@@ -212,8 +223,9 @@ def limited(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
             for budget in BUDGETS:
                 for method in LIMITED:
                     small = budget == BUDGETS[0] and method in AT_FEW
-                    settings = SMALL_POPULATION if small else ()
+                    settings = SMALL_POPULATION if small else own(method, budget)
                     yield Planned("limits", seed, case, method, budget, settings)
+            yield Planned("limits", seed, case, "es", BUDGETS[0])
 
 
 def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
@@ -224,6 +236,8 @@ def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                 case = Case(move)
                 for method in AT_FEW:
                     yield Planned("few", seed, case, method, budget, SMALL_POPULATION, share)
+                for method in FOR_FEW if budget == FEW else FOR_FEW[:1]:
+                    yield Planned("few", seed, case, method, budget, noise=share)
                 yield Planned("few", seed, case, "random", budget, noise=share)
                 settings = (("step", WIDE_STEPS[0]),) if share else ()
                 yield Planned("few", seed, case, "slsqp", budget, settings, share)

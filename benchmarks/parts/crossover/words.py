@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from quietarm.metaheuristics import PRESETS
 
 LABELS = {
@@ -14,10 +16,7 @@ LABELS = {
     "multistart starts=100": "multistart",
     "nsga2+polish": "NSGA-II, polished",
     "gde3+polish": "GDE3, polished",
-    "gde3 population=20": "GDE3 of 20",
-    "moead-de population=20": "MOEA/D-DE of 20",
     "moead-de reevaluate=5": "MOEA/D-DE, five evaluations",
-    "nsga2 population=20": "NSGA-II of 20",
     "slsqp": "SLSQP",
     "slsqp continuation=False": "SLSQP, random starts",
     "slsqp step=0.01": "SLSQP, steps of 1 % of the box",
@@ -33,6 +32,8 @@ def short_label(method: str) -> str:
         return LABELS[method]
     name, _, settings = method.partition(" ")
     label = LABELS.get(name) or (PRESETS[name].label if name in PRESETS else name)
+    if individuals := re.fullmatch(r"population=(\d+)", settings):
+        return f"{label} of {individuals[1]}"
     return f"{label}, tuned" if "population=" in settings else f"{label} {settings}".strip()
 
 
