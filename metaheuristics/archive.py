@@ -167,7 +167,8 @@ class Archive:
         """A column of the entries, of those alone that none dominates now."""
         if not self._entered:
             return np.empty((0, width))
-        return np.concatenate([block[column] for block in self._entered])[self._front]
+        blocks: list[Any] = [block[column] for block in self._entered]
+        return np.concatenate(blocks)[self._front]
 
     def share_of_box(self) -> float:
         """Share of the reference box that is dominated."""

@@ -467,7 +467,7 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
         function.failed,
         function.infeasible,
         *function.units[:2],
-        names=function.objectives[:2],
+        names=(function.objectives[0], function.objectives[1]),
     )
 
 

@@ -66,8 +66,11 @@ class MemeticMOEAD(ScaledMOEAD):
 
     def _setup(self, problem: Any, **options: Any) -> None:
         function = getattr(problem, "function", None)
-        of_move = isinstance(function, RecordedFunction) and function.of_model
-        if not of_move or problem.n_obj != 2:
+        if (
+            not isinstance(function, RecordedFunction)
+            or not function.of_model
+            or problem.n_obj != 2
+        ):
             raise ValueError(
                 "memetic takes derivatives of a move's residual and energy, and this problem has "
                 "none, or more objectives; choose a method without derivatives, as moead-de"

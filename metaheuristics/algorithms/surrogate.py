@@ -28,6 +28,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import norm, qmc
 from threadpoolctl import threadpool_limits
 
+Rows = NDArray[np.intp]
 Array = NDArray[np.float64]
 _FAILED = 1e30
 """Values from here up are those of candidates that failed."""
@@ -223,7 +224,7 @@ def _next(
     return rows[chosen]
 
 
-def _nearest_to(F: Array, violation: Array, best: Array, most: int) -> Array:
+def _nearest_to(F: Array, violation: Array, best: Rows, most: int) -> Rows:
     """Rows that a model is made of: all, or those nearest to the front."""
     if len(F) <= most:
         return np.arange(len(F))

@@ -84,11 +84,15 @@ class RecordedFunction(ProblemFunction):
         reevaluate: int = 1,
         seed: int = 0,
     ) -> None:
-        if isinstance(instance("task", task, PointToPoint, ProblemFunction), ProblemFunction):
-            problem_function: Any = task
+        asked: PointToPoint | ProblemFunction = instance(
+            "task", task, PointToPoint, ProblemFunction
+        )
+        problem_function: Any
+        if isinstance(asked, ProblemFunction):
+            problem_function = asked
         else:
             problem_function = MoveFunction(
-                task, profile, bound=bound, objectives=objectives, threads=threads
+                asked, profile, bound=bound, objectives=objectives, threads=threads
             )
         for name in _OF_PROBLEM:
             setattr(self, name, getattr(problem_function, name))

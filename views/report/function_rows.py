@@ -8,7 +8,6 @@ from typing import Any
 from quietarm.metaheuristics.spread import hypervolumes
 from quietarm.ocp import Front
 from quietarm.ocp.front.function_front import FunctionFront
-from quietarm.ocp.front.points import has_knee
 from quietarm.views.report.words import counted, spread_words
 
 
@@ -42,7 +41,7 @@ def _chosen_points(front: Front) -> list[str]:
     table = front.objective_values
     rows = {f"least {entry.label}": int(table[:, k].argmin())
             for k, entry in enumerate(front.outputs)}  # fmt: skip
-    if has_knee(table):
+    if front.has_knee:
         rows["knee"] = front.points.index(front.knee())  # pyright: ignore[reportArgumentType]
     width = max(15, *(len(name) + 1 for name in rows))
     return [
