@@ -80,7 +80,7 @@ def test_a_saved_beam_states_its_place_only_where_it_is_another():
     ({"direction": "x"}, "direction of the beam is 'x'; give three numbers"),
     ({"direction": None}, "direction of the beam is None; give three numbers"),
     ({"offset": (0.0, float("nan"), 0.0)}, "offset of the beam is nan; give a finite number in m"),
-    ({"offset": (100.0, 0.0, 5000.0)}, "offset of the beam is 5000; give at most 1000"),
+    ({"offset": (100.0, 0.0, 5000.0)}, "offset of the beam is 5000 m; give at most 1000 m"),
     ({"roll": float("inf")}, "roll of the beam is inf; give a finite number in rad"),
 ])  # fmt: skip
 def test_what_is_no_place_of_a_beam_is_refused(entries, words):

@@ -45,7 +45,7 @@ def test_every_point_of_a_file_is_on_the_page_with_its_figures(done, folder, fro
     front.save("front.json")
     out = done("export front.json --output front.html --quiet")
     text = (folder / "front.html").read_text()
-    assert out == f"5 motions, {len(text.encode()) / 1e3:.0f} kB\nwrote front.html\n"
+    assert out == f"wrote front.html\n5 motions, {len(text.encode()) / 1e3:.0f} kB\n"
     (move,) = data_of(text)
     stated = json.loads((folder / "front.json").read_text())["points"]
     assert [(p["residual"], p["energy"]) for p in move["points"]] == [
