@@ -205,7 +205,7 @@ def test_the_points_of_a_front_are_what_they_leave():
 
 
 def test_two_modes_that_lie_close_beat_for_longer():
-    # docs/moves.md: 2.09 s of 6 and 6.6 rad/s, whose beat takes 10.5 s
+    # docs/arrival.md: 2.09 s of 6 and 6.6 rad/s, whose beat takes 10.5 s
     plant = qa.LinearAxis(
         omega1=6.0, zeta1=0.002, share1=0.5, omega2=6.6, zeta2=0.002, share2=0.5, mode_count=2.0
     )

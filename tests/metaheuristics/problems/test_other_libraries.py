@@ -3,27 +3,26 @@
 import json
 import random
 import re
-from pathlib import Path
 
 import pytest
+from pages import blocks
 
 from quietarm.metaheuristics import problem_of
 from quietarm.ocp import Front
 
 pytestmark = pytest.mark.slow
 
-DOCUMENT = Path(__file__).parents[3] / "docs" / "problems.md"
-BLOCKS = re.findall(r"^```python\n(.*?)^```$", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
+BLOCKS = blocks("problems", "python") + blocks("own_methods", "python")
 (PLATYPUS,), (STEADY,) = (
     [block for block in BLOCKS if name in block] for name in ("platypus", "jmetal")
 )
 
 
-def test_the_document_s_examples_run_as_they_stand(tmp_path, monkeypatch, capsys):
+def test_the_pages_examples_run_as_they_stand(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for block in BLOCKS:
         if block not in (PLATYPUS, STEADY):
-            exec(compile(block, str(DOCUMENT), "exec"), {})
+            exec(compile(block, "page", "exec"), {})
     assert Front.load("random.json").record.method == "random"
     printed = capsys.readouterr().out.splitlines()
     assert any(float(line) > 0 for line in printed if re.fullmatch(r"[\d.]+", line))  # IGD+
@@ -45,7 +44,7 @@ def test_platypus_searches_a_problem_with_limits():
     pytest.importorskip("platypus")
     random.seed(5)
     names = {}
-    exec(compile(PLATYPUS, str(DOCUMENT), "exec"), names)
+    exec(compile(PLATYPUS, "page", "exec"), names)
     found = [solution for solution in names["algorithm"].result if solution.feasible]
     assert len(found) > 2
     none_beats_the_exact_front(solution.objectives for solution in found)
@@ -55,7 +54,7 @@ def test_a_steady_state_of_jmetal_searches_it_and_is_recorded(tmp_path, monkeypa
     pytest.importorskip("jmetal")
     monkeypatch.chdir(tmp_path)
     names = {}
-    exec(compile(STEADY, str(DOCUMENT), "exec"), names)
+    exec(compile(STEADY, "page", "exec"), names)
     found = [one for one in names["algorithm"].result() if min(one.constraints) >= 0]
     assert len(found) > 2
     none_beats_the_exact_front(one.objectives for one in found)
