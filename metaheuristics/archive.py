@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics.score import share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, Mark, PointToPoint, reference_corner
-from quietarm.ocp.cost import COST
+from quietarm.ocp.cost import COST, Cost
 from quietarm.ocp.front.function_front import FunctionEntries
 from quietarm.ocp.front.points import Entries
 from quietarm.ocp.front.searched_function import SearchedFunction
@@ -81,7 +81,8 @@ class Archive:
         self._waiting = list[tuple[Places, Array, Array, Array]]()
         self._waiting_rows = 0
         # what a simulator or a machine takes is no time of this thread
-        self._clock = time.thread_time if isinstance(task, PointToPoint) else time.monotonic
+        self._of_move = isinstance(task, PointToPoint)
+        self._clock = time.thread_time if self._of_move else time.monotonic
         self._began = self._clock()
         self._seconds_here = 0.0
         self._cost = COST.copy()
@@ -103,7 +104,7 @@ class Archive:
 
         Of a user's own function all the time that has passed.
         """
-        apart = self._seconds_here + COST.since(self._cost).builds
+        apart = self._seconds_here + self._spent().builds
         return self._clock() - self._began - apart
 
     def add(
@@ -146,9 +147,13 @@ class Archive:
         """Count so many candidates that were simulated for derivatives, and may not enter."""
         self.evaluations += evaluations
 
+    def _spent(self) -> Cost:
+        """Return the work since the beginning; none of a function, which another thread may ask."""
+        return COST.since(self._cost) if self._of_move else Cost()
+
     def mark(self, seconds: float) -> None:
         """Note the effort until now."""
-        spent = COST.since(self._cost)
+        spent = self._spent()
         self.marks.append(
             Mark(
                 self.evaluations,
