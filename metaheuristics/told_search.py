@@ -192,6 +192,7 @@ class Search:
                 problem.reference or (),
             )
         )
+        self._written = _stamp(self._path)
         self._known = {told.number: told for told in self._resumed()}
         self._told = list[Told]()
         self._pending: Array = np.empty((0, len(problem.lower)))
@@ -209,7 +210,7 @@ class Search:
     @property
     def evaluations(self) -> int:
         """Number of candidates that were told."""
-        return len(self._told)
+        return len(self._told) + sum(told is not None for told in self._values)
 
     @interruptible
     def ask(self, most: int | None = None) -> Any:
@@ -256,6 +257,8 @@ class Search:
         rows = table_of(np.atleast_2d(numbers("candidates", candidates, "numbers")), function.size)
         count = len(rows)
         values = self._table("objectives", objectives, count, function.objectives)
+        if violations is None and np.isnan(values).all():
+            violations = np.nan  # what failed has none
         broken = self._table("violations", violations, count, function.constraints)
         places = list[int]()
         for row in rows:
@@ -273,8 +276,16 @@ class Search:
             self._go_on()
 
     def front(self) -> Front:
-        """The front of what was told until now, a `FunctionFront`; ValueError before that."""
+        """The front of what was told until now, a `FunctionFront`; ValueError before that.
+
+        Of methods with a population these are the generations that are told whole.
+        """
         self._raise_failure()
+        if not self._told:
+            raise ValueError(
+                f"{self.evaluations} of the first {len(self._pending)} candidates are told; tell "
+                "the others before a front is asked for"
+            )
         return self._run.front()
 
     def close(self) -> None:
@@ -318,6 +329,8 @@ class Search:
         if values is None:
             raise ValueError(f"{what} are missing; give {wanted}")
         table = numbers(what, values, wanted, infinite=True)
+        if table.ndim == 0 and np.isnan(table):
+            return np.full((count, len(names)), np.nan)
         if table.ndim < 2 and table.size == count * len(names) and 1 in (count, len(names)):
             table = table.reshape(count, len(names))
         if table.shape != (count, len(names)):
@@ -329,9 +342,19 @@ class Search:
     def _save(self) -> None:
         if self._path is None:
             return
+        self._refuse_another_writer()
         partly = [told for told in self._values if told is not None]
         told = (*self._told, *partly)
         SearchState(**{**vars(self._state), "told": told}).save(self._path)
+        self._written = _stamp(self._path)
+
+    def _refuse_another_writer(self) -> None:
+        """Refuse to write over what another search has told the same file since."""
+        if _stamp(self._path) != self._written:
+            raise ValueError(
+                f"{self._path} was changed by another program since this search read it; begin "
+                "again from the file, or give each search a file of its own"
+            )
 
     def _hand_over(self) -> None:
         """Give the method the values that it waits for."""
@@ -420,6 +443,14 @@ class _Exchange:
 
 class _ClosedError(BaseException):
     """Nobody measures any more."""
+
+
+def _stamp(path: Path | None) -> tuple[int, int] | None:
+    """When a file was changed, and its inode, which each whole writing makes anew; None of none."""
+    if path is None or not path.exists():
+        return None
+    found = path.stat()
+    return found.st_mtime_ns, found.st_ino
 
 
 def _or_none(values: Array) -> Numbers:

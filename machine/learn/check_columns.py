@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +20,16 @@ _LEAST = 1e-4
 """Share of the way, below which a joint that swings more than the tip tells nothing."""
 _MOSTLY = 0.5
 """Share of what a joint does after arrival that is a swing, where it swings."""
+
+
+def refuse_constant(name: str, columns: Mapping[str, Array | None]) -> None:
+    """Refuse a recording with a column that never changes, as of an unconnected sensor."""
+    for what, values in columns.items():
+        if values is not None and np.ptp(np.asarray(values), axis=0).max() == 0:
+            raise ValueError(
+                f"{name}: its {what} never changes, and the plan moves; give the column of a "
+                "sensor that was connected"
+            )
 
 
 def check_columns(plan: Plan, recording: Recording, arrival: float) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
-from quietarm.machine.learn.check_columns import check_columns
+from quietarm.machine.learn.check_columns import check_columns, refuse_constant
 from quietarm.machine.learn.check_move import check_move
 from quietarm.machine.learn.evidence import Evidence, ReadMove, evidence_of, is_by_joint
 from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
@@ -148,6 +148,15 @@ def check_plan(plan: Plan) -> None:
 def read_move(plan: Plan, recording: Recording) -> ReadMove:
     """The start of a plan's move in a recording, and the swing after it."""
     task = plan.task
+    refuse_constant(
+        recording.name,
+        {
+            "tip": recording.tip,
+            "accelerometer": recording.acceleration,
+            "joint": recording.angle,
+            "torque": recording.torque,
+        },
+    )
     found = find_start(plan, recording)
     doubt = off_the_path(plan, recording, found)
     start = found.time

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.identified import Estimate, Identified
+from quietarm.machine.learn.check_columns import refuse_constant
 from quietarm.machine.learn.evidence import Evidence, history_with
 from quietarm.machine.learn.joint_torques import SeenModes
 from quietarm.machine.learn.robot_start import RobotStart, find_robot_start
@@ -152,6 +153,7 @@ def _checked(plan: Plan, recordings: Any) -> list[RobotRecording]:
                     f"{recording.name} has {values.shape[1]} columns of {name}, and {plant.name} "
                     f"{count} {words}, {', '.join(names)}; give one of each, in this order"
                 )
+        refuse_constant(recording.name, {name: getattr(recording, name) for name in wanted})
     return checked
 
 

@@ -219,6 +219,8 @@ class GivenFunction(ProblemFunction):
             raise self._failed(error) from error
         if isinstance(result, tuple) and len(result) == 2 and self._is_pair(result):
             return result
+        if self.constraints and _is_nan(result):
+            return np.nan, np.full(len(self.constraints), np.nan)
         if self.constraints:
             raise _UnfitError(
                 f"{self._name} returns {_kind(result)}; with constraints give two: (objectives, "
@@ -235,15 +237,19 @@ class GivenFunction(ProblemFunction):
         return bool(self.constraints) or empty
 
     def _shaped(self, values: Any, shape: tuple[int, ...], what: str) -> Array:
-        if values is None or (0 in shape and np.size(values) == 0):
-            values = np.empty(shape)
+        names = self.objectives if what == "objectives" else self.constraints
+        if 0 in shape and (values is None or np.size(values) == 0):
+            return np.empty(shape)
+        if values is None:
+            raise _UnfitError(f"{self._name} returns no {what}; return {', '.join(names)}")
+        if _is_nan(values) and len(shape) == 1:
+            return np.full(shape, np.nan)
         wanted = f"numbers of shape {shape}"
         try:
             table = numbers(what, values, wanted, infinite=True)
         except ValueError as error:
             raise _UnfitError(f"{self._name}: {error}") from None
         if table.shape != shape:
-            names = self.objectives if what == "objectives" else self.constraints
             raise _UnfitError(
                 f"{self._name} returns {what} of shape {table.shape}, not {shape}; give "
                 f"{', '.join(names) or 'none'} in this order for each candidate"
@@ -281,6 +287,11 @@ class GivenFunction(ProblemFunction):
                 f"{self._name} gives no finite numbers (nan or infinite) for the first "
                 f"{self._failed_at_first} candidates; mend it, or give other bounds"
             )
+
+
+def _is_nan(value: Any) -> bool:
+    """Return whether a candidate's value is one nan, in the place of all of them."""
+    return np.ndim(value) == 0 and isinstance(value, float | np.floating) and bool(np.isnan(value))
 
 
 def name_of(function: Function) -> str:

@@ -76,6 +76,8 @@ def points_of_several(
     ValueError
         When a move begins elsewhere than where the one before it ends, or has other joints.
     """
+    if pause and len(plans) == 1:
+        raise ValueError("a pause is between several moves, and one plan is given; leave it out")
     _check_joined(plans)
     parts = list[Points]()
     ends = list[float]()

@@ -130,7 +130,7 @@ def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapp
     )
 
 
-def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, str] | None:
+def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None:
     """What the row with limits says: ranges over the kinds of limit; None before any run.
 
     The search is the one whose largest gap over the kinds is least.
@@ -149,17 +149,23 @@ def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, str] | None
     )
     chosen = rows[label]
     gradient = [row_of(kind["methods"], label) or {} for kind in kinds]
-    clear = sum(row["holm"] <= 0.05 and row["log_ratio"] < 0 for row in chosen)
+    clear = [
+        kind["limits"].replace("-", ", ")
+        for kind, row in zip(kinds, chosen, strict=True)
+        if row["holm"] <= 0.05 and row["log_ratio"] < 0
+    ]
     better = sum(row["moves_nearer"] for row in chosen)
+    compared = sum(row["moves"] - row["no_control"] for row in chosen)
     return {
         "name": label.partition(" ")[0],
         "label": short_label(label),
         "search": range_of(row["missing"] for row in chosen),
         "differences": range_of(row["control"] for row in chosen),
         "gradient": range_of(row["control"] for row in gradient),
+        "is_sure": bool(clear),
         "sure": (
-            f"better than SLSQP on {better} of {sum(row['moves'] for row in chosen)} moves, "
-            f"clearly with {clear} of {len(kinds)} kinds of limit"
+            f"better than SLSQP on {better} of {compared} problems; "
+            f"significant for {' and for '.join(clear) if clear else 'no kind of limit'}"
         ),
     }
 
