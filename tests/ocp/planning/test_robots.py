@@ -59,7 +59,7 @@ def test_a_robot_with_a_bar_arrives_still(plan):
     assert plan.residual < 1e-6
     residual, energy, _ = _measured(plan)
     assert residual <= 0.05e-3
-    assert residual == pytest.approx(0.030e-3, abs=2e-6)  # README, docs/robots_evidence.md, docs/field.md
+    assert residual == pytest.approx(0.030e-3, abs=2e-6)  # README, robots_evidence.md, field.md
     assert energy == pytest.approx(plan.energy, rel=1e-4)
 
 
