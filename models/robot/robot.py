@@ -127,7 +127,7 @@ class Robot(CheckedRobot):
     @classmethod
     @interruptible
     def load(cls, path: str | Path) -> Robot:
-        """Read a robot's file, in YAML; docs/robots.md has its entries.
+        """Read a robot's file, in YAML; docs/robots_reference.md has its entries.
 
         Raises
         ------

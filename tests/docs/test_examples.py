@@ -330,7 +330,7 @@ def test_the_machine_of_the_page_is_the_one_that_was_recorded(run_python, follow
 
 @pytest.mark.slow
 def test_the_moves_of_the_page_are_learned_from(run_python, follow):
-    of_page, said = blocks("learn", "text")
+    of_page, said, _ = blocks("learn", "text")
     left = [float(mm) for mm in re.findall(r"left ([\d.]+) mm", run_python(LEARN))]
     assert left[0] == pytest.approx(float(re.findall(r"left ([\d.]+)", of_page)[0]), rel=0.01)
     assert max(left[2:]) < left[0] / 500  # of the page: 0.004 of 7.45 mm

@@ -59,7 +59,7 @@ def test_a_robot_with_a_bar_arrives_still(plan):
     assert plan.residual < 1e-6
     residual, energy, _ = _measured(plan)
     assert residual <= 0.05e-3
-    assert residual == pytest.approx(0.030e-3, abs=2e-6)  # README, docs/robots.md, docs/field.md
+    assert residual == pytest.approx(0.030e-3, abs=2e-6)  # README, robots_evidence.md, field.md
     assert energy == pytest.approx(plan.energy, rel=1e-4)
 
 
@@ -104,7 +104,7 @@ class FrozenBeyond(Frozen):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("frozen", "left"), [  # docs/robots.md
+@pytest.mark.parametrize(("frozen", "left"), [  # docs/robots_evidence.md
     (FrozenAtTheStart, 5.40e-3),
     (FrozenInTheMiddle, 12.2e-3),
     (Frozen, 16.8e-3),
@@ -203,10 +203,10 @@ def test_a_path_with_sharp_turns_is_corrected_by_the_whole_equations():
     waypoints = START + np.linspace(0.0, 1.0, 6)[:, None] * (END - START)
     waypoints[1:-1] += beside
     planned = qa.plan_move(_task(path=qa.GeometricPath.through(waypoints)))
-    assert _measured(planned)[0] == pytest.approx(6.31e-3, rel=0.01)  # docs/robots.md
+    assert _measured(planned)[0] == pytest.approx(6.31e-3, rel=0.01)  # docs/robots_evidence.md
     corrected = qa.ocp.correct_in_full(planned)
     residual, energy, _ = _measured(corrected)
-    assert residual <= 0.15e-3  # docs/robots.md: 0.10 mm
+    assert residual <= 0.15e-3  # docs/robots_evidence.md: 0.10 mm
     figures = corrected.candidate.in_full
     assert figures.residual <= 1e-5
     assert figures.energy == pytest.approx(energy, rel=1e-4)
