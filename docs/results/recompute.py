@@ -330,6 +330,7 @@ def compare(
     searches: Sequence[tuple[str, int]],
     measure: str,
     rival: Rival | None = None,
+    with_intervals: bool = True,
 ) -> list[dict[str, Any]]:
     """Every search against the gradient, or another rival, over the problems that all have.
 
@@ -378,7 +379,7 @@ def compare(
             row |= {
                 "p": signed_ranks(lacks - theirs),
                 "log_ratio": float(np.median(ratios)),
-                "interval": interval(ratios, of_known),
+                "interval": interval(ratios, of_known) if with_intervals else None,
                 "moves_nearer": int((lacks < theirs).sum()),
                 "plants_nearer": int(sum(value < 0 for value in by_plant)),
                 "plants": len(by_plant),
@@ -460,7 +461,7 @@ def by_indicator(results: Results, crossed: Sequence[str]) -> dict[str, dict[str
                     )
                     if label.partition(" ")[0] in crossed and not takes_slopes(label)
                 ]
-                rows = compare(results, problems, searches, indicator)
+                rows = compare(results, problems, searches, indicator, with_intervals=False)
                 rows = [row for row in rows if row["moves"]]
                 if rows:
                     best.append(min(rows, key=lambda row: row["missing"]))

@@ -259,6 +259,6 @@ def test_a_small_crossing_from_end_to_end(tmp_path, capsys):
     assert run.done_keys(results) == {job.key for job in jobs}
     by_search, by_gradient = sorted(recompute.read_runs(results), key=lambda run: -run.budget)
     assert by_search.marks[-1, 0] == 300
-    assert recompute.area(by_gradient.points) > recompute.area(by_search.points) > 0
+    assert recompute.area(by_gradient.between) > recompute.area(by_search.points) > 0
     # with motions between, ten points are a curve
     assert recompute.area(by_gradient.between) > recompute.area(by_gradient.points)

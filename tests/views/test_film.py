@@ -102,7 +102,7 @@ def test_plans_of_different_plants_and_durations_become_a_gif(done, folder, plan
     with Image.open("move.gif") as image:  # in 0.9 s and two periods of the slower link, 1.18 s
         assert (image.n_frames, image.width) == (9, 240)
     kilobytes = (folder / "move.gif").stat().st_size / 1e3
-    assert out == f"9 frames, 2.2 s, {kilobytes:.0f} kB\nwrote move.gif\n"
+    assert out == f"wrote move.gif\n9 frames, 2.2 s, {kilobytes:.0f} kB\n"
 
 
 @pytest.mark.slow_after(1)

@@ -122,8 +122,8 @@ def table_in_markdown(table: DataFrame) -> str:
     """A table in Markdown: four digits, a dash where there is no value."""
     cells = table.map(lambda cell: markdown(cell) if isinstance(cell, str) else cell)
     cells = cells.astype(object).where(table.notna(), None).rename(columns=markdown)
-    for place, name in enumerate(cells.columns):
-        cells.isetitem(place, _whole_numbers(cells[name]))
+    for place in range(len(cells.columns)):
+        cells.isetitem(place, _whole_numbers(cells.iloc[:, place]))
     return Markdown(cells.to_markdown(index=False, floatfmt=".4g", missingval="-"))
 
 

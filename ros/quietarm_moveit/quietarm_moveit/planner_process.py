@@ -57,7 +57,7 @@ class PlannerProcess:
         except OSError as error:
             raise PlannerError(
                 f"quietarm_python is {python}, which does not start ({error}); give the "
-                "interpreter of the environment with quietarm, as /home/me/quietarm/bin/python"
+                "interpreter of the environment with quietarm, such as ~/quietarm/bin/python"
             ) from None
         self.robot = self.ask(options)
         if "error" in self.robot:

@@ -16,11 +16,13 @@ from quietarm.ocp.profiles.shaped_cycloid import SHAPERS
 from quietarm.studies.cli.commands.plan_command import FoundMotion, finish_motion
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import (
+    BLEND,
     BOUND,
     LINE,
     OBJECTIVES,
     PATH_TOLERANCE,
     SENSITIVITIES,
+    SOME_WAYPOINTS,
     TASK,
     VERBOSE,
     busy,
@@ -63,6 +65,8 @@ def _coefficients(text: str) -> list[float] | Path:
     option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
            "place of start, target and duration; of a robot its waypoints."),
     PATH_TOLERANCE,
+    SOME_WAYPOINTS,
+    BLEND,
     *LINE,
     BOUND,
     option("--evaluations", type=int, help="Candidates that it took to find a file's rows."),

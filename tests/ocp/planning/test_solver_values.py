@@ -149,6 +149,8 @@ WITHOUT_A_CHOICE = {
     ("studies/reproduce/recompute.py", "plan_move"): "the same",
     ("studies/reproduce/recompute.py", "cross_check"): "by the other solver of its front",
     ("studies/cli/commands/front_command.py", "cross_check"): "the same",
+    ("studies/trajectory_messages.py", "plan_move"): "a message of ROS names no solver",
+    ("studies/trajectory_messages.py", "correct_in_full"): "the same",
     ("ocp/planning/as_timed.py", "plan_move"): "a plan beside a trajectory that is diagnosed",
     ("metaheuristics/problems/catalogue.py", "epsilon_front"): "the reference front of a problem",
 }
