@@ -254,6 +254,7 @@ def positions(file):
     return [float(place) for _, place, _ in blocks], {(axis, feed) for axis, _, feed in blocks}
 
 
+@pytest.mark.slow
 def test_an_export_format(follow, refused, done):
     *_, printed = follow("An export format")
     plan = Plan.load("plan.json")

@@ -48,6 +48,7 @@ LINES = {
 }
 
 
+@pytest.mark.slow
 def test_the_file_is_named_and_nothing_is_left(call, saved, full_after):
     full_after(0)
     before = sorted(saved.iterdir())

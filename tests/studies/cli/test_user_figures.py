@@ -37,6 +37,7 @@ def heading(path):
         return next(csv.reader(file))
 
 
+@pytest.mark.slow
 def test_a_file_of_ones_own_makes_options_rows_and_entries(own, done):
     out = done(f"plan {MOVE} {LIMIT} --terms 8 --output plan.json")
     assert "tip acceleration 2 m/s^2" in out

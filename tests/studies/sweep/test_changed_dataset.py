@@ -181,6 +181,7 @@ def test_nothing_is_said_of_what_zarr_leaves_unfinished(copied):
     assert "remove the dataset and sweep it again" in ended.stderr
 
 
+@pytest.mark.slow_after(3)
 @pytest.mark.parametrize("name", ["zarr.json", "energy/zarr.json", "coefficients/c/0/0/0"])
 @pytest.mark.parametrize("kind", ["pipe", "device", "huge"])
 def test_a_dataset_whose_files_never_end_is_not_read(copied, call, name, kind):

@@ -43,6 +43,7 @@ def test_the_effort_of_a_front_is_what_was_written(refused, files, place):
     assert words in refused("compare good.json --reference poor.json")
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("place", ["record/seconds", "status", "steps"])
 def test_so_is_that_of_a_plan(refused, folder, plan, place):
     plan.save("mine.json")

@@ -58,6 +58,7 @@ def drive():
     return load_plant_file("drive.py")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("drive")
 def test_a_move_of_it_has_rad_on_the_screen_and_in_files(done, folder):
     out = done(
