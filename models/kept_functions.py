@@ -163,12 +163,19 @@ class Folder:
         return key if key is not None and len(key) == _DIGEST else None
 
     def _make_key(self) -> bytes:
-        """Write a key, unless another process is first; files of another key are then not read."""
-        with suppress(FileNotFoundError):
-            (self._path / _KEY).unlink()
+        """Write a key, unless another process is first: its key is the one of both.
+
+        One that is no key makes room only after that, so that none is lost that is good.
+        """
         with suppress(FileExistsError):
             self._place(_KEY, secrets.token_bytes(_DIGEST), os.link)
         key = self._read_key()
+        if key is None:
+            with suppress(FileNotFoundError):
+                (self._path / _KEY).unlink()
+            with suppress(FileExistsError):
+                self._place(_KEY, secrets.token_bytes(_DIGEST), os.link)
+            key = self._read_key()
         if key is None:
             raise PermissionError(f"{self._path} keeps no key")
         return key
