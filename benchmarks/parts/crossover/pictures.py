@@ -124,7 +124,7 @@ def map_figure(
     for ax in axes[:, 0]:
         ax.set_ylabel("candidates")
     bar = figure.colorbar(_scale_of_map(), ax=axes, shrink=0.6, ticks=[-1, 0, 1])
-    words = ["a tenth of\nthe gap", "alike", "ten times\nthe gap"]
+    words = ["search: a tenth\nof the gap", "alike", "search: ten\ntimes the gap"]
     bar.ax.set_yticklabels(words, fontsize=SMALL)
     return figure
 
@@ -132,8 +132,8 @@ def map_figure(
 def narrow_map_figure(
     cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> Figure:
-    """The same for a phone: panels below each other, budget by coefficients in wider cells."""
-    figure = new_figure(NARROW, 2.2 + 4.1 * len(ways))
+    """Return `map_figure` for a phone: budget by coefficients, in cells that are higher."""
+    figure = new_figure(NARROW, 2.2 + 5.9 * len(ways))
     _head_of_map(figure, cells, ways, rival)
     axes = figure.subplots(len(ways), 1, squeeze=False)[:, 0]
     terms = sorted({cell["terms"] for cell in cells})
@@ -141,7 +141,7 @@ def narrow_map_figure(
     for ax, (way, title) in zip(axes, ways, strict=True):
         for cell in cells:
             corner = (budgets.index(cell["budget"]), terms.index(cell["terms"]))
-            draw_cell(ax, corner, cell["ways"].get(way), rival, wide=True)
+            draw_cell(ax, corner, cell["ways"].get(way), rival)
         ax.set(
             xlim=(0, len(budgets)),
             ylim=(len(terms), 0),  # few coefficients above
@@ -159,7 +159,7 @@ def narrow_map_figure(
         _scale_of_map(), ax=list(axes), location="bottom", ticks=[-1, 0, 1], fraction=0.02,
         aspect=25, pad=0.01,
     )  # fmt: skip
-    words = ["a tenth of\nthe gap", "alike", "ten times\nthe gap"]
+    words = ["search: a tenth\nof the gap", "alike", "search: ten\ntimes the gap"]
     bar.ax.set_xticklabels(words, fontsize=8)
     return figure
 
@@ -213,18 +213,13 @@ def draw_cell(
     corner: tuple[int, int],
     row: Mapping[str, Any] | None,
     rival: str,
-    wide: bool = False,
 ) -> None:
-    """The gaps of the best search and its rival; hatched or dotted without a verdict.
-
-    In a wide cell the search's name is in one line.
-    """
+    """The gaps of the best search and its rival; hatched or dotted without a verdict."""
     if row is None:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor=grammar.PALE, edgecolor="white"))
         middle(ax, corner, "not run", grammar.INK)
         return
-    name = short_label(row["method"])
-    name = name if wide else name.replace(" of ", "\nof ")
+    name = short_label(row["method"]).replace(" of ", "\nof ")
     text = f"{name}\n{two_digits(row['missing'])} %\n{rival}\n"
     if row["no_front"]:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))
@@ -337,7 +332,7 @@ def _lines_figure(lines: Mapping[str, Any], axis: str, fixed: str) -> Figure:
         )
         ax.minorticks_off() if axis == "coefficients" else None
         ax.set_xlabel(axis)
-        ax.set_ylabel("hypervolume missing [%]")
+        ax.set_ylabel("hypervolume gap [%]")
         ax.set_title(title, **TITLE)
     return figure
 
@@ -401,7 +396,7 @@ def _over_groups(
     slope = 35  # degrees, so that labels stay apart on a phone
     names_of_groups = [labels[name] for name in groups]
     ax.set_xticks(range(len(groups)), names_of_groups, rotation=slope, ha="right")
-    ax.set_ylabel("hypervolume missing [%]")
+    ax.set_ylabel("hypervolume gap [%]")
     return figure
 
 
