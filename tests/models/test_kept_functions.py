@@ -243,9 +243,13 @@ def test_a_plan_of_kept_functions_is_the_same_to_the_last_digit(tmp_path):
         rows = [line for line in run.stdout.splitlines() if not line.startswith("time ")]
         return rows, {name: plan[name] for name in plan if name not in ("record", "checksum")}
 
+    def files():
+        return {path.name: path.stat().st_ino for path in (tmp_path / "functions").iterdir()}
+
     without = answer("off")
     assert answer(tmp_path) == without
-    files = {path.name: path.stat().st_ino for path in (tmp_path / "functions").iterdir()}
-    assert len(files) > 5
+    before = files()
+    assert len(before) > 5
     assert answer(tmp_path) == without
-    assert {path.name: path.stat().st_ino for path in (tmp_path / "functions").iterdir()} == files
+    # what took just less than the least time may be slower in the second run, and be kept by it
+    assert before.items() <= files().items()
