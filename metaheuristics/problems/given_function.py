@@ -192,11 +192,10 @@ class GivenFunction(ProblemFunction):
         """Values of many candidates by one call."""
         objectives, violations = self._called(table.copy())
         count = len(table)
-        shapes = (count, len(self.objectives)), (count, len(self.constraints))
         return np.column_stack(
             [
-                self._shaped(objectives, shapes[0], "objectives"),
-                self._shaped(violations, shapes[1], "violations"),
+                self._shaped(objectives, (count, len(self.objectives)), "objectives"),
+                self._shaped(violations, (count, len(self.constraints)), "violations"),
             ]
         )
 
@@ -205,11 +204,11 @@ class GivenFunction(ProblemFunction):
         objectives, violations = self._called(row.copy())
         if violations is not None and np.ndim(violations) == 0:
             violations = [violations]
-        found = [
+        values = [
             self._shaped(objectives, (len(self.objectives),), "objectives"),
             self._shaped(violations, (len(self.constraints),), "violations"),
         ]
-        return np.concatenate(found)[None]
+        return np.concatenate(values)[None]
 
     def _called(self, argument: Array) -> tuple[Any, Any]:
         """Objectives, and violations where there are constraints, as the function returns them."""
