@@ -27,6 +27,7 @@ from quietarm.ocp.objectives import (
 )
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.record import Record, coefficient_bound
+from quietarm.ocp.simulation.evaluator import Evaluation
 
 Array = NDArray[np.float64]
 
@@ -120,12 +121,15 @@ class MoveFunction(ProblemFunction):
             When they are no plain numbers, or the shape is another.
         """
         with np.errstate(all="ignore"):  # coefficients of any size
-            evaluation = self._evaluator(candidates)
-            objectives, violations = measured_figures(evaluation, self.peaks, self._limited)
+            objectives, violations = self._figures(self._evaluator(candidates))
         table = np.column_stack([objectives, violations])
         replace_failures(table)
         count = len(self.objectives)
         return table[:, :count], table[:, count:]
+
+    def _figures(self, evaluation: Evaluation) -> tuple[Array, Array]:
+        """Objectives and violations of what was simulated."""
+        return measured_figures(evaluation, self.peaks, self._limited)
 
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None

@@ -13,12 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.evaluation.population import (
-    measured_figures,
-    replace_failures,
-    search_steps,
-)
+from quietarm.metaheuristics.evaluation.population import search_steps
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.problems.given_function import GivenFunction, name_of
 from quietarm.models.dimensions import TIP, WAY, Words
@@ -141,18 +136,12 @@ class OwnEnergyFunction(MoveFunction):
         """Return False: the model's gradient is not that of this energy."""
         return False
 
-    @interruptible
-    def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
-        """Evaluate candidates, as a `MoveFunction` does, with the user's energy."""
-        with np.errstate(all="ignore"):
-            evaluation = self._evaluator(candidates)
-            objectives, violations = measured_figures(evaluation, self.peaks, self._limited)
-            if len(objectives):
-                objectives[:, 1] = self._energies(evaluation)
-        table = np.column_stack([objectives, violations])
-        replace_failures(table)
-        count = len(self.objectives)
-        return table[:, :count], table[:, count:]
+    def _figures(self, evaluation: Evaluation) -> tuple[Array, Array]:
+        """Objectives with the user's energy, and violations."""
+        objectives, violations = super()._figures(evaluation)
+        if len(objectives):
+            objectives[:, 1] = self._energies(evaluation)
+        return objectives, violations
 
     def _energies(self, evaluation: Evaluation) -> Array:
         samples = samples_of(evaluation, self.move.duration)
