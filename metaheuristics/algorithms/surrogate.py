@@ -141,12 +141,8 @@ def gaussian_process(
 
     Parameters
     ----------
-    function : callable
-        A problem's recorded function.
-    seed : int
-        Seed of the random numbers.
-    budget : int
-        Candidates that count: of more than 250 several are chosen by one model.
+    function, seed, budget
+        As of `SearchMethod.run`; of more than 250 candidates several are chosen by one model.
     training : int
         Most candidates that a model knows: those nearest to the front.
     pool : int
