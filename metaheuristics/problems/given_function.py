@@ -13,11 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.evaluation.population import replace_failures
-from quietarm.metaheuristics.problems.problem_function import ProblemFunction
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
 from quietarm.ocp import Front
 from quietarm.ocp.checks import clipped, numbers, table_of, whole, words_of_error
-from quietarm.ocp.front.function_front import FunctionFront, FunctionPoint, ordered_points
-from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.function_front import (
+    FunctionEntries,
+    FunctionFront,
+    FunctionPoint,
+    ordered_points,
+)
+from quietarm.ocp.front.points import Entries, FrontPoint
 from quietarm.ocp.front.searched_function import SearchedFunction
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record
@@ -147,6 +152,14 @@ class GivenFunction(ProblemFunction):
             for row, (first, second, *more) in zip(coefficients.tolist(), values.tolist())
         ]
         return ordered_points(points, self.objectives)
+
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front of the function."""
+        first, second, *others = objectives
+        named = dict(zip(self.objectives[2:], others))
+        return FunctionEntries(candidates, coefficients, first, second, named, believed)
 
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
         """The front of the function."""

@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.metaheuristics.evaluation.population import search_steps
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.problems.given_function import GivenFunction, name_of
+from quietarm.metaheuristics.problems.problem_function import Rows
 from quietarm.models.dimensions import TIP, WAY, Words
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import numbers, words_of_error
-from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.points import Entries, FrontPoint
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, with_peaks_measured
 from quietarm.ocp.record import Record
@@ -156,11 +157,22 @@ class OwnEnergyFunction(MoveFunction):
             raise ValueError(f"energy {name} has shape {values.shape}; give {wanted}")
         return values
 
+    @property
+    def corner(self) -> Any:
+        """Return None: it follows from what is found."""
+        return self._shown.corner
+
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
     ) -> tuple[FrontPoint, ...]:
         """The points of a front, with the values of the search's steps."""
         return self._shown.points_of(coefficients, values, bound)
+
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front, as of a function."""
+        return self._shown.entries_of(candidates, coefficients, objectives, believed)
 
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
         """The front, as one of a function."""
