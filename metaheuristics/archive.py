@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from dataclasses import replace
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
@@ -14,12 +13,10 @@ from numpy.typing import NDArray
 
 from quietarm.metaheuristics.score import share_of_box
 from quietarm.metaheuristics.thinning import thinned
-from quietarm.ocp import Front, Mark, PointToPoint, reference_corner
+from quietarm.ocp import Front, Mark
 from quietarm.ocp.cost import COST, Cost
-from quietarm.ocp.front.function_front import FunctionEntries
 from quietarm.ocp.front.points import Entries
-from quietarm.ocp.front.searched_function import SearchedFunction
-from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, peak_quantities
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record, versions
 
 if TYPE_CHECKING:
@@ -39,41 +36,20 @@ class Archive:
 
     Parameters
     ----------
-    task : PointToPoint or SearchedFunction
-        The move, or what stands in its place.
-    variables : int
-        Coefficients of a candidate.
-    objectives : sequence of str
-        Names of the objectives.
+    problem : ProblemFunction
+        What is searched: it makes entries, points and fronts of what was found.
     noisy : bool
         Whether the values that it takes have noise.
-    corner : tuple of float, optional
-        What hypervolumes are measured from; by default that of the task, or else the largest values
-        of the candidates that entered.
     """
 
-    def __init__(
-        self,
-        task: PointToPoint | SearchedFunction,
-        variables: int,
-        objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
-        noisy: bool = False,
-        corner: tuple[float, ...] | None = None,
-    ) -> None:
-        self.names = tuple(objectives)
+    def __init__(self, problem: ProblemFunction, noisy: bool = False) -> None:
+        self.problem = problem
+        self.names = problem.objectives
         self.noisy = noisy
         self.evaluations = 0
         self.marks = list[Mark]()
-        self._corner = corner
-        self._kind_of_entries = Entries
-        if isinstance(task, PointToPoint):
-            self._others = peak_quantities(self.names)
-            self._corner = reference_corner(task, objectives) if corner is None else corner
-        else:
-            self._others = self.names[len(RESIDUAL_AND_ENERGY) :]
-            self._kind_of_entries = FunctionEntries
+        self._corner = problem.corner
         self._next_mark = 1.0
-        self._variables = variables
         self._front: Places = np.empty(0, dtype=np.int64)  # which of those that entered
         self._objectives = np.empty((0, len(self.names)))
         self._entered = list[tuple[Places, Array, Array, Array]]()
@@ -81,15 +57,14 @@ class Archive:
         self._waiting = list[tuple[Places, Array, Array, Array]]()
         self._waiting_rows = 0
         # what a simulator or a machine takes is no time of this thread
-        self._of_move = isinstance(task, PointToPoint)
-        self._clock = time.thread_time if self._of_move else time.monotonic
+        self._clock = time.thread_time if problem.of_model else time.monotonic
         self._began = self._clock()
         self._seconds_here = 0.0
         self._cost = COST.copy()
 
     @property
     def corner(self) -> tuple[float, ...]:
-        """The corner that hypervolumes are measured from."""
+        """The corner that hypervolumes are measured from: the problem's, or the largest values."""
         if self._corner is not None:
             return self._corner
         self._let_enter()
@@ -149,7 +124,7 @@ class Archive:
 
     def _spent(self) -> Cost:
         """Return the work since the beginning; none of a function, which another thread may ask."""
-        return COST.since(self._cost) if self._of_move else Cost()
+        return COST.since(self._cost) if self.problem.of_model else Cost()
 
     def mark(self, seconds: float) -> None:
         """Note the effort until now."""
@@ -166,7 +141,7 @@ class Archive:
     def non_dominated(self) -> tuple[Array, Array]:
         """Coefficients and objectives of what was found, by increasing residual."""
         self._let_enter()
-        return self._of_front(1, self._variables), self._objectives
+        return self._of_front(1, len(self.problem.variables)), self._objectives
 
     def _of_front(self, column: int, width: int) -> Array:
         """A column of the entries, of those alone that none dominates now."""
@@ -188,16 +163,13 @@ class Archive:
         """Every candidate that entered."""
         self._let_enter()
         if not self._entered:
-            return self._kind_of_entries()
+            return self.problem.entries_of((), (), ((), ()), ())
         columns: list[Any] = [np.concatenate(column) for column in zip(*self._entered)]
         numbers, coefficients, believed, true = columns
-        residuals, energies, *peaks = (tuple(column.tolist()) for column in true.T)
-        return self._kind_of_entries(
+        return self.problem.entries_of(
             tuple(numbers.tolist()),
             _rows(coefficients),
-            residuals,
-            energies,
-            dict(zip(self._others, peaks)),
+            tuple(tuple(column.tolist()) for column in true.T),
             _rows(believed) if self.noisy else (),
         )
 
@@ -224,7 +196,6 @@ class Archive:
 
     def front(
         self,
-        problem: ProblemFunction,
         record: Record,
         *,
         failed: int = 0,
@@ -242,14 +213,14 @@ class Archive:
         began = self._clock()
         chosen = thinned(objectives)
         true = self._of_front(3, len(self.names))
-        points = problem.points_of(coefficients[chosen], true[chosen], record.bound)
+        points = self.problem.points_of(coefficients[chosen], true[chosen], record.bound)
         record = replace(
             record,
             evaluations=self.evaluations,
             versions=search_versions(),
             seconds=searched + self._clock() - began,
         )
-        return problem.front_with(
+        return self.problem.front_with(
             points,
             record,
             reference=self.corner,

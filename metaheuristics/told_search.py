@@ -11,7 +11,7 @@ import queue
 import threading
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -91,10 +91,7 @@ class SearchState(Answer):
 
     def differences(self, other: SearchState) -> list[str]:
         """Names of what another search would be asked for in another way."""
-        names = (
-            "function", "method", "evaluations", "seed", "reevaluate", "population", "settings",
-            "reference",
-        )  # fmt: skip
+        names = [entry.name for entry in fields(self) if entry.name not in ("told", "versions")]
         return [name for name in names if getattr(self, name) != getattr(other, name)]
 
 
@@ -344,8 +341,7 @@ class Search:
             return
         self._refuse_another_writer()
         partly = [told for told in self._values if told is not None]
-        told = (*self._told, *partly)
-        SearchState(**{**vars(self._state), "told": told}).save(self._path)
+        replace(self._state, told=(*self._told, *partly)).save(self._path)
         self._written = _stamp(self._path)
 
     def _refuse_another_writer(self) -> None:
@@ -403,8 +399,6 @@ class Search:
 class _Exchange:
     """Where the thread of a method and whoever measures meet: one of them waits at any time."""
 
-    __name__ = "measured"
-
     def __init__(self) -> None:
         self._questions = queue.SimpleQueue[Any]()
         self._answers = queue.SimpleQueue[Any]()
@@ -449,8 +443,8 @@ def _stamp(path: Path | None) -> tuple[int, int] | None:
     """When a file was changed, and its inode, which each whole writing makes anew; None of none."""
     if path is None or not path.exists():
         return None
-    found = path.stat()
-    return found.st_mtime_ns, found.st_ino
+    status = path.stat()
+    return status.st_mtime_ns, status.st_ino
 
 
 def _or_none(values: Array) -> Numbers:

@@ -32,12 +32,14 @@ CORNER = 1.1
 UNIT = 1e-4
 """Motions between are kept in whole multiples of this share of the scale."""
 LEVEL = 0.05
+TERMS = (2, 4, 6, 10, 16, 24)
 CENTRE = 6
+BUDGETS = (1_000, 10_000, 100_000)
+OF_MAP = ("centre", "crossing", "large")
+"""Tables that have the runs of the map."""
 CONTROL = "epsilon"
 CONTROL_SETTINGS = "points=50"
 DIFFERENCES = "slsqp"
-OWN_POPULATION = {"nsga2": 100, "gde3": 100, "moead-de": 100, "memetic": 50, "mo-cma-es": 30}
-"""Individuals that a method's label states with a thousand candidates."""
 KINDS = ("absolute", "copper", "stages", "motor-map", "integer")
 PAPER = ("nsga2-paper", "vepso")
 TARGETS = (50, 20, 10, 5, 2, 1)
@@ -188,7 +190,8 @@ class Results:
             if len(run.between):  # of two objectives alone
                 points_of[run.problem].append(run.between)
             energies[run.problem].append(run.energy)
-        self.whole = {name: best_known(np.vstack(points)) for name, points in points_of.items()}
+        self.points = {name: np.vstack(points) for name, points in points_of.items()}
+        self.whole = {name: best_known(points) for name, points in self.points.items()}
         self.least_energy = {
             name: min(filter(np.isfinite, values), default=np.inf)
             for name, values in energies.items()
@@ -212,14 +215,7 @@ class Results:
     @cached_property
     def reference(self) -> dict[str, Array]:
         """The best points of all runs of a problem, without and with motions between."""
-        points_of = defaultdict[str, list[Array]](list)
-        for run in self.runs:
-            points_of[run.problem].append(run.points)
-            if len(run.between):
-                points_of[run.problem].append(run.between)
-        return {
-            name: moocore.filter_dominated(np.vstack(points)) for name, points in points_of.items()
-        }
+        return {name: moocore.filter_dominated(points) for name, points in self.points.items()}
 
     def gap(self, run: Run, indicator: str) -> float:
         """How far a front is from the best that is known [%], by an indicator.
@@ -410,19 +406,25 @@ def takes_slopes(label: str) -> bool:
     return any(word in label for word in ("memetic", "+polish", DIFFERENCES))
 
 
+def searches_of_cell(
+    results: Results, terms: int, budget: int, crossed: Sequence[str]
+) -> list[tuple[str, int]]:
+    """The searches of a cell of the map that see values alone."""
+    return [
+        (label, spent)
+        for label, spent in searches_in(results, OF_MAP, budget, results.problems(terms), 5)
+        if label.partition(" ")[0] in crossed and not takes_slopes(label)
+    ]
+
+
 def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> dict[str, Any]:
     """A cell of the map: the nearest search against the gradient or differences, in six ways."""
     problems = results.problems(terms)
-    have = searches_in(results, ("centre", "crossing", "large"), budget, problems, 5)
-    searches = [
-        (label, spent)
-        for label, spent in have
-        if label.partition(" ")[0] in crossed and not takes_slopes(label)
-    ]
+    searches = searches_of_cell(results, terms, budget, crossed)
     rivals: dict[str, Rival] = {
         "to its end": lambda name, spent: results.control(name),
         "same time": results.control_within,
-        "differences": lambda name, spent: results.of(DIFFERENCES, budget, name),
+        "differences": by_label(results, DIFFERENCES, budget),
     }
     ways = {}
     for measure in MEASURES:
@@ -451,16 +453,10 @@ def by_indicator(results: Results, crossed: Sequence[str]) -> dict[str, dict[str
     figures = {}
     for indicator in INDICATORS:
         best = list[dict[str, Any]]()
-        for budget in (1_000, 10_000, 100_000):
-            for terms in (2, 4, 6, 10, 16, 24):
+        for budget in BUDGETS:
+            for terms in TERMS:
                 problems = results.problems(terms)
-                searches = [
-                    (label, spent)
-                    for label, spent in searches_in(
-                        results, ("centre", "crossing", "large"), budget, problems, 5
-                    )
-                    if label.partition(" ")[0] in crossed and not takes_slopes(label)
-                ]
+                searches = searches_of_cell(results, terms, budget, crossed)
                 rows = compare(results, problems, searches, indicator, with_intervals=False)
                 rows = [row for row in rows if row["moves"]]
                 if rows:
@@ -528,36 +524,39 @@ def few_figures(results: Results) -> list[dict[str, Any]]:
             ]
             if not methods:
                 continue
-            differences = min(
-                (label for label, _ in methods if label.startswith(DIFFERENCES)),
-                key=lambda label: _median(
-                    np.array(
-                        [
-                            results.median(results.of(label, budget, name), results.gap, "between")
-                            for name in problems
-                            if results.of(label, budget, name)
-                        ]
-                    )
-                ),
-            )
+            rows = compare(results, problems, methods, "between")
+            steps = [row for row in rows if row["method"].startswith(DIFFERENCES)]
+            best_steps = min(steps, key=lambda row: row["missing"])
+            rival = by_label(results, best_steps["method"], budget)
             searches = [pair for pair in methods if not takes_slopes(pair[0])]
             figures.append(
                 {
                     "budget": budget,
                     "noise": 0.01 if noise else 0.0,
-                    "methods": compare(results, problems, methods, "between"),
-                    "differences": compare(
-                        results, problems, searches, "between",
-                        by_label(results, differences, budget),
-                    ),
+                    "methods": rows,
+                    "differences": compare(results, problems, searches, "between", rival),
                 }
-            )  # fmt: skip
+            )
     return figures
 
 
 def by_label(results: Results, label: str, budget: int) -> Rival:
     """A method with a budget as the rival of searches."""
     return lambda name, spent: results.of(label, budget, name)
+
+
+def usual_label(results: Results, method: str, budget: int) -> str:
+    """The label by which a method's usual settings stand in the map.
+
+    Where its runs state a population these are the settings with most individuals: smaller ones
+    are for few candidates.
+    """
+    stated = [
+        label
+        for label, _ in searches_in(results, OF_MAP, budget, list(results.whole), 1)
+        if label.startswith(f"{method} population=")
+    ]
+    return max(stated, key=lambda label: int(label.rpartition("=")[2]), default=method)
 
 
 def lines_over(
@@ -575,9 +574,7 @@ def lines_over(
 
     def runs_at(method: str, terms: int, budget: int) -> dict[str, list[Run]]:
         spent = 0 if method == control else budget
-        label = method
-        if spent == 1_000 and method in OWN_POPULATION:
-            label = f"{method} population={OWN_POPULATION[method]}"
+        label = usual_label(results, method, spent)
         runs_of = {name: results.of(label, spent, name) for name in results.problems(terms)}
         return {Problem(name).move: runs for name, runs in runs_of.items() if runs}
 
@@ -885,15 +882,11 @@ def gradient_labels(results: Results, problems: Sequence[str]) -> list[tuple[str
 
 def map_figures(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
     """Coefficients and budget crossed, and the lines through the centre."""
-    every_terms = (2, 4, 6, 10, 16, 24)
-    budgets = (1_000, 10_000, 100_000)
-    over_terms = [(terms, terms, 10_000) for terms in every_terms]
-    over_budgets = [(budget, CENTRE, budget) for budget in budgets]
+    over_terms = [(terms, terms, 10_000) for terms in TERMS]
+    over_budgets = [(budget, CENTRE, budget) for budget in BUDGETS]
     return {
         "crossed": list(crossed),
-        "map": [
-            cell(results, terms, budget, crossed) for budget in budgets for terms in every_terms
-        ],
+        "map": [cell(results, terms, budget, crossed) for budget in BUDGETS for terms in TERMS],
         "map_rows": {
             "by_terms": lines_over(results, over_terms, crossed),
             "by_budget": lines_over(results, over_budgets, crossed),
@@ -901,21 +894,19 @@ def map_figures(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def energy_by_terms(
-    results: Results, crossed: Sequence[str], every_terms: Sequence[int] = (2, 4, 6, 10, 16, 24)
-) -> dict[str, list[dict[str, float]]]:
+def energy_by_terms(results: Results, crossed: Sequence[str]) -> dict[str, list[dict[str, float]]]:
     """Energy within 1 mm above that of the gradient with most coefficients, medians over moves [%].
 
     After 10,000 candidates; a run without such a motion counts as infinite.
     """
-    most = {Problem(name).move: name for name in results.problems(every_terms[-1])}
+    most = {Problem(name).move: name for name in results.problems(TERMS[-1])}
     least = {move: runs[0].energy for move, name in most.items() if (runs := results.control(name))}
     control = f"{CONTROL} {CONTROL_SETTINGS}"
     figures = {}
     for method in (control, *crossed):
         budget = 0 if method == control else 10_000
         figures[method] = []
-        for terms in every_terms:
+        for terms in TERMS:
             ratios = [
                 np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
                 / least[Problem(name).move]
@@ -970,7 +961,7 @@ def against_differences(results: Results, crossed: Sequence[str]) -> dict[str, A
             problems,
             searches,
             "between",
-            lambda name, spent: results.of(DIFFERENCES, budget, name),
+            by_label(results, DIFFERENCES, budget),
         )
     random = f"{DIFFERENCES} continuation=False"
     by_seed = defaultdict[int, list[float]](list)
@@ -984,7 +975,7 @@ def against_differences(results: Results, crossed: Sequence[str]) -> dict[str, A
             results.problems(),
             [("moead-de", budget)],
             "between",
-            lambda name, spent: results.of(random, budget, name),
+            by_label(results, random, budget),
         ),
         "integer_by_seed": [float(np.median(values)) for _, values in sorted(by_seed.items())],
     }

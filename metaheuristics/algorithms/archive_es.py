@@ -108,12 +108,8 @@ def archive_es(
 
     Parameters
     ----------
-    function : callable
-        A problem's recorded function.
-    seed : int
-        Seed of the random numbers.
-    budget : int
-        Candidates that count; the function itself ends the search.
+    function, seed, budget
+        As of `SearchMethod.run`.
     first : int
         Candidates that are drawn uniformly before.
     differences : float

@@ -78,12 +78,8 @@ def slsqp(
 
     Parameters
     ----------
-    function : callable
-        A problem's recorded function.
-    seed : int
-        Seed of the starts and limits.
-    budget : int
-        Candidates that count.
+    function, seed, budget
+        As of `SearchMethod.run`.
     step : float
         Of a difference, as a share of the box.
     continuation : bool

@@ -28,10 +28,10 @@ from scipy.spatial.distance import cdist
 from scipy.stats import norm, qmc
 from threadpoolctl import threadpool_limits
 
+from quietarm.metaheuristics.evaluation.population import UNUSABLE
+
 Rows = NDArray[np.intp]
 Array = NDArray[np.float64]
-_FAILED = 1e30
-"""Values from here up are those of candidates that failed."""
 
 
 class GaussianProcess:
@@ -112,15 +112,15 @@ class Surrogate:
     """
 
     refit: int = 10
-    found: dict[int, Array] = field(default_factory=dict)
+    logarithms: dict[int, Array] = field(default_factory=dict)
     used: int = 0
 
     def predict(self, U: Array, values: Array, rows: Array) -> tuple[Array, Array]:
         """Mean and standard deviation of each column of values at rows of the unit box."""
         pairs = [self._of(column, U, values[:, column], rows) for column in range(values.shape[1])]
         self.used += 1
-        means, deviations = (np.column_stack(several) for several in zip(*pairs))
-        return means, deviations
+        means, deviations = zip(*pairs)
+        return np.column_stack(means), np.column_stack(deviations)
 
     def _of(self, column: int, U: Array, values: Array, rows: Array) -> tuple[Array, Array]:
         farthest = 5.0  # standard deviations: what is beyond is bad, however bad
@@ -128,8 +128,8 @@ class Surrogate:
         scale = float(values.std()) or 1.0
         scaled = np.clip((values - middle) / scale, -farthest, farthest)
         anew = self.used % self.refit == 0
-        model = GaussianProcess(U, scaled, self.found.get(column), fit=anew)
-        self.found[column] = model.logarithms
+        model = GaussianProcess(U, scaled, self.logarithms.get(column), fit=anew)
+        self.logarithms[column] = model.logarithms
         means, deviations = model.predict(rows)
         return means * scale + middle, deviations * scale
 
@@ -141,12 +141,8 @@ def gaussian_process(
 
     Parameters
     ----------
-    function : callable
-        A problem's recorded function.
-    seed : int
-        Seed of the random numbers.
-    budget : int
-        Candidates that count: of more than 250 several are chosen by one model.
+    function, seed, budget
+        As of `SearchMethod.run`; of more than 250 candidates several are chosen by one model.
     training : int
         Most candidates that a model knows: those nearest to the front.
     pool : int
@@ -184,10 +180,11 @@ def _next(
     random: np.random.Generator,
 ) -> Array:
     """The next candidates, in the unit box."""
-    usable = table[:, 0] < _FAILED
+    usable = table[:, 0] < UNUSABLE
     if usable.sum() < 3:
         return random.random((together, U.shape[1]))
-    U, table = U[usable], table[usable]
+    U = U[usable]
+    table = table[usable]
     F = table[:, :objectives]
     violation = np.maximum(table[:, objectives:], 0.0).sum(axis=1)
     feasible = violation <= 0

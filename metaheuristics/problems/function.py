@@ -14,10 +14,10 @@ from quietarm.metaheuristics.evaluation.population import (
     replace_failures,
     search_evaluator,
 )
-from quietarm.metaheuristics.problems.problem_function import ProblemFunction
-from quietarm.ocp import Front, JointProfile, PointToPoint
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
+from quietarm.ocp import Front, JointProfile, PointToPoint, reference_corner
 from quietarm.ocp.checks import takes
-from quietarm.ocp.front.points import FrontPoint, evaluated
+from quietarm.ocp.front.points import Entries, FrontPoint, evaluated
 from quietarm.ocp.objectives import (
     RESIDUAL_AND_ENERGY,
     checked_objectives,
@@ -27,6 +27,7 @@ from quietarm.ocp.objectives import (
 )
 from quietarm.ocp.planning.choose_profile import choose_profile
 from quietarm.ocp.record import Record, coefficient_bound
+from quietarm.ocp.simulation.evaluator import Evaluation
 
 Array = NDArray[np.float64]
 
@@ -120,12 +121,20 @@ class MoveFunction(ProblemFunction):
             When they are no plain numbers, or the shape is another.
         """
         with np.errstate(all="ignore"):  # coefficients of any size
-            evaluation = self._evaluator(candidates)
-            objectives, violations = measured_figures(evaluation, self.peaks, self._limited)
+            objectives, violations = self._figures(self._evaluator(candidates))
         table = np.column_stack([objectives, violations])
         replace_failures(table)
         count = len(self.objectives)
         return table[:, :count], table[:, count:]
+
+    def _figures(self, evaluation: Evaluation) -> tuple[Array, Array]:
+        """Objectives and violations of what was simulated."""
+        return measured_figures(evaluation, self.peaks, self._limited)
+
+    @property
+    def corner(self) -> tuple[float, ...]:
+        """Return the corner of the task."""
+        return reference_corner(self.task, self.objectives)
 
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
@@ -135,6 +144,14 @@ class MoveFunction(ProblemFunction):
         return evaluated(
             self.task, self.profile, coefficients, bound, objectives=self.objectives
         ).points
+
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front of the move."""
+        residuals, energies, *others = objectives
+        peaks = dict(zip(self.peaks, others))
+        return Entries(candidates, coefficients, residuals, energies, peaks, believed)
 
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
         """The front of the move."""

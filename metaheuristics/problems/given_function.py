@@ -13,11 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.evaluation.population import replace_failures
-from quietarm.metaheuristics.problems.problem_function import ProblemFunction
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
 from quietarm.ocp import Front
 from quietarm.ocp.checks import clipped, numbers, table_of, whole, words_of_error
-from quietarm.ocp.front.function_front import FunctionFront, FunctionPoint, ordered_points
-from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.function_front import (
+    FunctionEntries,
+    FunctionFront,
+    FunctionPoint,
+    ordered_points,
+)
+from quietarm.ocp.front.points import Entries, FrontPoint
 from quietarm.ocp.front.searched_function import SearchedFunction
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record
@@ -148,6 +153,14 @@ class GivenFunction(ProblemFunction):
         ]
         return ordered_points(points, self.objectives)
 
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front of the function."""
+        first, second, *others = objectives
+        named = dict(zip(self.objectives[2:], others))
+        return FunctionEntries(candidates, coefficients, first, second, named, believed)
+
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
         """The front of the function."""
         of_function: Any = points
@@ -192,11 +205,10 @@ class GivenFunction(ProblemFunction):
         """Values of many candidates by one call."""
         objectives, violations = self._called(table.copy())
         count = len(table)
-        shapes = (count, len(self.objectives)), (count, len(self.constraints))
         return np.column_stack(
             [
-                self._shaped(objectives, shapes[0], "objectives"),
-                self._shaped(violations, shapes[1], "violations"),
+                self._shaped(objectives, (count, len(self.objectives)), "objectives"),
+                self._shaped(violations, (count, len(self.constraints)), "violations"),
             ]
         )
 
@@ -205,11 +217,11 @@ class GivenFunction(ProblemFunction):
         objectives, violations = self._called(row.copy())
         if violations is not None and np.ndim(violations) == 0:
             violations = [violations]
-        found = [
+        values = [
             self._shaped(objectives, (len(self.objectives),), "objectives"),
             self._shaped(violations, (len(self.constraints),), "violations"),
         ]
-        return np.concatenate(found)[None]
+        return np.concatenate(values)[None]
 
     def _called(self, argument: Array) -> tuple[Any, Any]:
         """Objectives, and violations where there are constraints, as the function returns them."""

@@ -13,18 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.evaluation.population import (
-    measured_figures,
-    replace_failures,
-    search_steps,
-)
+from quietarm.metaheuristics.evaluation.population import search_steps
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.problems.given_function import GivenFunction, name_of
+from quietarm.metaheuristics.problems.problem_function import Rows
 from quietarm.models.dimensions import TIP, WAY, Words
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import numbers, words_of_error
-from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.points import Entries, FrontPoint
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, with_peaks_measured
 from quietarm.ocp.record import Record
@@ -141,18 +137,12 @@ class OwnEnergyFunction(MoveFunction):
         """Return False: the model's gradient is not that of this energy."""
         return False
 
-    @interruptible
-    def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
-        """Evaluate candidates, as a `MoveFunction` does, with the user's energy."""
-        with np.errstate(all="ignore"):
-            evaluation = self._evaluator(candidates)
-            objectives, violations = measured_figures(evaluation, self.peaks, self._limited)
-            if len(objectives):
-                objectives[:, 1] = self._energies(evaluation)
-        table = np.column_stack([objectives, violations])
-        replace_failures(table)
-        count = len(self.objectives)
-        return table[:, :count], table[:, count:]
+    def _figures(self, evaluation: Evaluation) -> tuple[Array, Array]:
+        """Objectives with the user's energy, and violations."""
+        objectives, violations = super()._figures(evaluation)
+        if len(objectives):
+            objectives[:, 1] = self._energies(evaluation)
+        return objectives, violations
 
     def _energies(self, evaluation: Evaluation) -> Array:
         samples = samples_of(evaluation, self.move.duration)
@@ -167,11 +157,22 @@ class OwnEnergyFunction(MoveFunction):
             raise ValueError(f"energy {name} has shape {values.shape}; give {wanted}")
         return values
 
+    @property
+    def corner(self) -> Any:
+        """Return None: it follows from what is found."""
+        return self._shown.corner
+
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
     ) -> tuple[FrontPoint, ...]:
         """The points of a front, with the values of the search's steps."""
         return self._shown.points_of(coefficients, values, bound)
+
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front, as of a function."""
+        return self._shown.entries_of(candidates, coefficients, objectives, believed)
 
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
         """The front, as one of a function."""

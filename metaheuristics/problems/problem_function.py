@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.ocp import Front
-from quietarm.ocp.front.points import FrontPoint
+from quietarm.ocp.front.points import Entries, FrontPoint
 from quietarm.ocp.record import Record
 
 Array = NDArray[np.float64]
+Rows = tuple[tuple[float, ...], ...]
 
 
 class ProblemFunction(ABC):
@@ -53,6 +54,11 @@ class ProblemFunction(ABC):
         """Return whether a plant's model stands behind it: it has a gradient, and no surprises."""
         return True
 
+    @property
+    def corner(self) -> tuple[float, ...] | None:
+        """Return the corner that hypervolumes are measured from; None as of `reference`."""
+        return self.reference
+
     @abstractmethod
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
         """Evaluate candidates, one a row.
@@ -66,6 +72,12 @@ class ProblemFunction(ABC):
         self, coefficients: Array, values: Array, bound: float | None
     ) -> tuple[FrontPoint, ...]:
         """Return the points of a front, of candidates and what they were worth to the search."""
+
+    @abstractmethod
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front, of a row for each objective; others as of `Entries`."""
 
     @abstractmethod
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:

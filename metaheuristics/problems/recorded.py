@@ -15,10 +15,10 @@ from quietarm.metaheuristics.archive import Archive
 from quietarm.metaheuristics.evaluation.noise import Noise, times_evaluated
 from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.problems.function import MoveFunction
-from quietarm.metaheuristics.problems.problem_function import ProblemFunction
+from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, table_of, takes, whole
-from quietarm.ocp.front.points import FrontPoint, beyond
+from quietarm.ocp.front.points import Entries, FrontPoint, beyond
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record, Setting
 
@@ -103,9 +103,7 @@ class RecordedFunction(ProblemFunction):
         self.noise = self._noise.share
         differs = self.noise if self.of_model else 1.0
         self.reevaluate = times_evaluated(reevaluate, differs)
-        self.archive = Archive(
-            self.task, len(self.variables), self.objectives, self.noise > 0, self.reference
-        )
+        self.archive = Archive(problem_function, self.noise > 0)
         self.failed = 0
         self.infeasible = 0
         self._idle = 0
@@ -210,7 +208,6 @@ class RecordedFunction(ProblemFunction):
         if self.noise or self.reevaluate > 1:
             stated |= {"noise": self.noise, "reevaluate": self.reevaluate}
         return self.archive.front(
-            self.asked,
             Record(method, stated, self.bound, seed),
             failed=self.failed,
             infeasible=self.infeasible,
@@ -221,11 +218,22 @@ class RecordedFunction(ProblemFunction):
         """Return whether a plant's model stands behind it."""
         return self.asked.of_model
 
+    @property
+    def corner(self) -> tuple[float, ...] | None:
+        """Return the corner that hypervolumes are measured from."""
+        return self.asked.corner
+
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
     ) -> tuple[FrontPoint, ...]:
         """Return the points of a front, as its problem's function makes them."""
         return self.asked.points_of(coefficients, values, bound)
+
+    def entries_of(
+        self, candidates: tuple[int, ...], coefficients: Rows, objectives: Rows, believed: Rows
+    ) -> Entries:
+        """Return the entries of a front, as its problem's function makes them."""
+        return self.asked.entries_of(candidates, coefficients, objectives, believed)
 
     def front_with(self, points: tuple[FrontPoint, ...], record: Record, **entries: Any) -> Front:
         """Return a front, as its problem's function makes it."""

@@ -7,7 +7,7 @@ energy in durations at even shares. All of them keep the task's limits and its b
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
@@ -156,6 +156,7 @@ def time_front(
     seed: int = 0,
     solver: Solver = Sqp(),
     report: Progress = no_report,
+    keep: Callable[[TimeFront], None] | None = None,
 ) -> TimeFront:
     """Find the front of the time to act and the energy of a task with a band.
 
@@ -171,6 +172,9 @@ def time_front(
         As for `fastest_move`.
     report : callable, optional
         Called with the number of points done and of all.
+    keep : callable, optional
+        Called after each duration, the fastest move's first, with the front until then: whoever is
+        stopped has it.
 
     Returns
     -------
@@ -185,35 +189,6 @@ def time_front(
         fastest move's.
     InfeasibleTaskError, SolverFailedError
         When no fastest move is found.
-    """
-    *_, front = growing_time_front(
-        task,
-        longest=longest,
-        points=points,
-        residual_limit=residual_limit,
-        bound=bound,
-        seed=seed,
-        solver=solver,
-        report=report,
-    )
-    return front
-
-
-def growing_time_front(
-    task: PointToPoint,
-    *,
-    longest: float | None = None,
-    points: int = 9,
-    residual_limit: float | None = None,
-    bound: float | None = None,
-    seed: int = 0,
-    solver: Solver = Sqp(),
-    report: Progress = no_report,
-) -> Iterator[TimeFront]:
-    """Yield the front of `time_front` with each further duration, the fastest move's first.
-
-    Whoever is stopped so keeps what was found until then. Arguments and errors are those of
-    `time_front`.
     """
     if task.band is None:
         raise ValueError(
@@ -236,21 +211,25 @@ def growing_time_front(
             f"the longest duration is {longest:g} s, and the fastest move takes {shortest:.4g} s; "
             "give a longer one"
         )
-    found = [_point_of(fastest)]
+    timed = [_point_of(fastest)]
     failures = list[str]()
     guess = fastest.coefficients
     report(1, points)
 
-    def front() -> TimeFront:
+    def front_until_now() -> TimeFront:
         record = replace(
             fastest.record,
             method="durations",
             settings={"points": points, "longest": longest, **solver.stated},
             seconds=time.perf_counter() - began,
         )
-        return TimeFront(fastest.task, fastest.profile, _falling(found), record, tuple(failures))
+        falling = _falling(timed)
+        grown = TimeFront(fastest.task, fastest.profile, falling, record, tuple(failures))
+        if keep is not None:
+            keep(grown)
+        return grown
 
-    yield front()
+    solution = front_until_now()
     for number, duration in enumerate(np.linspace(shortest, longest, points)[1:].tolist(), 2):
         try:
             plan = plan_move(
@@ -264,9 +243,10 @@ def growing_time_front(
             failures.append(f"{duration:.4g} s: {error}")
         else:
             guess = plan.coefficients
-            found.append(_point_of(plan))
+            timed.append(_point_of(plan))
         report(number, points)
-        yield front()
+        solution = front_until_now()
+    return solution
 
 
 def _point_of(plan: Plan) -> TimedPoint:

@@ -21,6 +21,8 @@ from quietarm.ocp.solvers.solver import Solver
 Array = NDArray[np.float64]
 SAME = 1e-5
 """Solutions whose objectives differ by less than this share count as one motion."""
+BRIEF = 120
+"""Iterations where no motion is to be seen as such soon; those that are found take 10 to 60."""
 
 
 def solve_from_starts(
@@ -71,14 +73,15 @@ def solve_from_starts(
     return replace(solved[0], iterations=iterations), solved
 
 
-def briefly(
-    solver: Solver, problem: Program, tried: Sequence[Solution], iterations: int = 120
-) -> Solver:
+def shortened(solver: Solver) -> Solver:
+    """Return the solver with `BRIEF` iterations at most."""
+    return replace(solver, iterations=min(BRIEF, solver.iterations))
+
+
+def briefly(solver: Solver, problem: Program, tried: Sequence[Solution]) -> Solver:
     """Return the solver with fewer iterations if all that was tried ended beyond a limit."""
     infeasible = all(solution.status is SolveStatus.INFEASIBLE for solution in tried)
-    if not (infeasible and problem.task.limits):
-        return solver
-    return replace(solver, iterations=min(iterations, solver.iterations))
+    return shortened(solver) if infeasible and problem.task.limits else solver
 
 
 def is_beyond(problem: Program, start: Array, share: float = 0.05) -> bool:

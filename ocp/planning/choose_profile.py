@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
-from quietarm.ocp.planning.best_of_starts import best_of_starts
+from quietarm.ocp.planning.best_of_starts import best_of_starts, shortened
 from quietarm.ocp.planning.least_time import SplineFit, fit_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
 from quietarm.ocp.planning.plan_along import plan_along
@@ -45,8 +45,6 @@ _OF_ONE_MODE = 18
 _OF_SEVERAL_MODES = 24
 """Terms within limits. Where one mode swings for more than seven periods 24 come 2 % nearer to the
 floor, but the solver may take minutes."""
-_BRIEF = 120
-"""Iterations where no motion is to be seen as such soon; those that are found take 10 to 60."""
 CHOSEN = "chosen_terms"
 OF_SIX = "energy_of_six_terms"
 """What a plan's record says of them."""
@@ -97,7 +95,7 @@ def _plan_on_first_that_will_do(request: Request) -> Plan:
     # to look for what would do with other limits takes a minute, and a duration is soon found
     is_beyond = fit is not None and fit.excess.is_beyond(_BEYOND)
     if _is_held(request) and (is_beyond or not request.task.limits):
-        raise InfeasibleTaskError(_beyond(request))
+        raise InfeasibleTaskError(_no_motion(request))
     # where the residual limit adapts, the stand-in was tried with these terms before
     last = replace(request, has_stand_in=not request.adapts)
     return _state_terms(plan_along(last.along(more_terms(request.task))))
@@ -126,7 +124,7 @@ def _try_fit(request: Request, fit: SplineFit) -> Plan | None:
     return _try_along(request, fit.profile, fit.excess.coefficients)
 
 
-def _beyond(request: Request) -> str:
+def _no_motion(request: Request) -> str:
     """What is said of limits that no motion comes near to."""
     task = request.task
     limits = Program.of(task, SIX).within(request.residual_limit).limits
@@ -146,7 +144,7 @@ def _plan_without_limits(request: Request) -> Plan | None:
 
 def _plan_of_held(request: Request) -> Plan | None:
     """The same within a residual limit that is held: what can be had is soon found."""
-    brief = replace(request, solver=_briefly(request.solver), quick=True)
+    brief = replace(request, solver=shortened(request.solver), quick=True)
     more = more_terms(request.task)
     plan = _try(brief)
     if plan is not None:
@@ -159,14 +157,9 @@ def _plan_of_held(request: Request) -> Plan | None:
 
 def _of_solver(plan: Plan, solver: Solver) -> Plan:
     """The plan whose record states a solver's options, and not those of its brief one."""
-    brief = _briefly(solver).stated
+    brief = shortened(solver).stated
     kept = {name: value for name, value in plan.record.settings.items() if name not in brief}
     return plan.restated(settings=kept | dict(solver.stated))
-
-
-def _briefly(solver: Solver) -> Solver:
-    """The solver with at most so many iterations, where what it needs is a third of them."""
-    return replace(solver, iterations=min(_BRIEF, solver.iterations))
 
 
 def _plan_within_limits(request: Request) -> Plan | None:
@@ -262,7 +255,7 @@ def _longer(request: Request, growth: float = 1.5, most: int = 5) -> str:
         duration = f"{task.duration * growth**power:.3g}"
         longer = with_even_scenarios(replace(task, duration=float(duration)))
         lasting = request.on(longer).along(more_terms(task))
-        if has_a_plan(lasting.problem(), lasting.profile.plain, _briefly(request.solver)):
+        if has_a_plan(lasting.problem(), lasting.profile.plain, shortened(request.solver)):
             return f"a duration of {duration} s will do"
     return ""
 

@@ -81,8 +81,8 @@ def follow_in_full(
     rest = equations.at_rest(target)
     state = np.concatenate([equations.at_rest(start), np.zeros(equations.springs)])
     numbers = motion.arguments.shape[0]
-    along = _along(equations, motion.law, numbers, steps)
-    outputs = _torques_and_speeds(equations, motion.law, numbers, steps)
+    along = _compiled(_build_along, equations, motion.law, numbers, steps)
+    outputs = _compiled(_build_torques_and_speeds, equations, motion.law, numbers, steps)
     work = 0.0
     peaks = list[Array]()
     try:
@@ -97,52 +97,27 @@ def follow_in_full(
             ]
             lengths = ca.DM(column[-1] * mesh.lengths).T
             work += float(ca.sum1(spent(energy, nodes, lengths)))
-        after = _afterwards(equations, np.size(target), tuple(window.tolist()))
+        times = tuple(window.tolist())
+        after = _compiled(_build_afterwards, equations, np.size(target), times)
         (later,) = after(state, np.atleast_1d(target))
     except RuntimeError as error:
         raise SolverFailedError(f"CVODES could not follow this motion{motion.remedy}") from error
     angles = np.column_stack([rest, later[: equations.springs]])
-    tips = _tips(equations, np.size(target), angles.shape[1])
+    tips = _compiled(_build_tips, equations, np.size(target), angles.shape[1])
     places = tips(np.atleast_1d(target), angles)[0].T
     away = np.linalg.norm(places[1:] - places[0], axis=1)
     return FullFigures(work, float(away.max()), np.max(peaks, axis=0), state)
 
 
-_of_robot = lru_cache(maxsize=4)
-"""Of a function that is built for a robot on its path, and a few more are remembered."""
-
-
+@lru_cache(maxsize=16)  # four of a robot on its path, and of a few more
 def _compiled(build: Callable[..., ca.Function], *parts: Any) -> Compiled:
     """Return the function that is built of its parts, all that it follows from."""
     name = build.__name__
     return Compiled(partial(build, *parts), silent=True, kept_as=(name, *parts))
 
 
-@_of_robot
-def _along(equations: SprungEquations, law: Law, numbers: int, steps: int) -> Compiled:
-    """(state, arguments of the law) -> states at the samples of a piece, a column each."""
-    return _compiled(_build_along, equations, law, numbers, steps)
-
-
-@_of_robot
-def _torques_and_speeds(equations: SprungEquations, law: Law, numbers: int, steps: int) -> Compiled:
-    """(states, arguments, fractions) -> torques and speeds of the joints, a column a sample."""
-    return _compiled(_build_torques_and_speeds, equations, law, numbers, steps)
-
-
-@_of_robot
-def _afterwards(equations: SprungEquations, size: int, window: tuple[float, ...]) -> Compiled:
-    """(state, place) -> states at times after arrival, with the joints at rest."""
-    return _compiled(_build_afterwards, equations, size, window)
-
-
-@_of_robot
-def _tips(equations: SprungEquations, size: int, states: int) -> Compiled:
-    """(place, angles of the springs) -> the tip, a column a state, with the joints at rest."""
-    return _compiled(_build_tips, equations, size, states)
-
-
 def _build_along(equations: SprungEquations, law: Law, numbers: int, steps: int) -> ca.Function:
+    """(state, arguments of the law) -> states at the samples of a piece, a column each."""
     given = ca.SX.sym("given", numbers)
     fraction = ca.SX.sym("fraction")
     motion = law(ca.vertsplit(given), fraction, jerk=False)
@@ -152,6 +127,7 @@ def _build_along(equations: SprungEquations, law: Law, numbers: int, steps: int)
 def _build_afterwards(
     equations: SprungEquations, size: int, window: tuple[float, ...]
 ) -> ca.Function:
+    """(state, place) -> states at times after arrival, with the joints at rest."""
     place = ca.SX.sym("there", size)
     fraction = ca.SX.sym("fraction")
     still = JointMotion(place, 0.0, 0.0)
@@ -199,6 +175,7 @@ CVODES = {
 def _build_torques_and_speeds(
     equations: SprungEquations, law: Law, numbers: int, steps: int
 ) -> ca.Function:
+    """(states, arguments, fractions) -> torques and speeds of the joints, a column a sample."""
     given = ca.SX.sym("given", numbers)
     fraction = ca.SX.sym("fraction")
     path = law(ca.vertsplit(given), fraction, jerk=False)
@@ -227,6 +204,7 @@ def _sample(torques: Array, speeds: Array) -> Sample:
 
 
 def _build_tips(equations: SprungEquations, size: int, states: int) -> ca.Function:
+    """(place, angles of the springs) -> the tip, a column a state, with the joints at rest."""
     place = ca.SX.sym("place", size)
     angles = ca.SX.sym("angles", equations.springs)
     origin = equations.tip(JointMotion(place, 0.0, 0.0), angles)

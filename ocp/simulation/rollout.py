@@ -147,7 +147,8 @@ class Simulation(NamedTuple):
         -------
         ndarray, shape (rows, 2 * modes)
         """
-        rows, nodes = len(errors), NODES * len(self.mesh.lengths)
+        rows = len(errors)
+        nodes = NODES * len(self.mesh.lengths)
 
         def columns(values: Sequence[float]) -> list[ca.DM]:
             return [ca.DM(np.full((rows, nodes), value)) for value in values]

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import quietarm as qa
-from quietarm.metaheuristics import problem_of, run_jobs
+from quietarm.metaheuristics import MoveFunction, problem_of, run_jobs
 from quietarm.metaheuristics.archive import Archive, entering
 from quietarm.metaheuristics.evaluation.population import objectives_of, search_evaluator
 from quietarm.metaheuristics.jobs import Job
@@ -45,7 +45,7 @@ few = st.integers(0, 6).map(float)  # with ties
 def test_what_enters_is_what_nothing_earlier_dominates_whatever_is_asked_at_once(rows, size):
     candidates = np.array(rows)
     assert entering(np.empty((0, 2)), candidates).tolist() == one_by_one(candidates)
-    archive = Archive(TASK, 1)
+    archive = Archive(MoveFunction(TASK, qa.CycloidPolynomial(1), bound=0.2))
     for begin in range(0, len(candidates), size):
         part = candidates[begin : begin + size]
         archive.add(part[:, :1], part, np.ones(len(part), dtype=bool))

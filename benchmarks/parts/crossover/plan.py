@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from quietarm.metaheuristics import Job
+from quietarm.metaheuristics import PRESETS, Job
 
 from .limits import LIMITS
 from .moves import Move
@@ -33,9 +33,7 @@ LADDER = (3, 5, 10, 50, 200)
 """Points of the gradient's fronts: more of them take more time, as a search's candidates do."""
 LONGEST = LADDER[-1]
 CROSSED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
-"""Methods of candidates that are run in every cell of the map."""
-OWN_POPULATION = {"nsga2": 100, "gde3": 100, "moead-de": 100, "memetic": 50, "mo-cma-es": 30}
-"""Individuals of methods whose default would be smaller with few candidates."""
+"""Methods of candidates that are run in every cell of the map, and on moves with limits."""
 SMALL = ("gde3", "moead-de")
 SMALL_POPULATION = (("population", 20),)
 """Of these with the smallest budget: a hundred individuals have ten generations there."""
@@ -43,8 +41,6 @@ CENTRAL = ("cmopso", "smsemoa", "moead", "nsga2+polish", "gde3+polish", "random"
 """Methods of candidates that are run at the centre beside these."""
 RANDOM_STARTS = (("continuation", False),)
 """Settings of `slsqp` by which each of its starts is random."""
-LIMITED = ("nsga2", "gde3", "moead-de", "mo-cma-es", "memetic", "slsqp")
-"""Methods that are run on moves with limits; small populations where candidates are few."""
 AT_FEW = ("nsga2", "gde3", "moead-de")
 """Searches of 20 individuals that are run with 200 candidates."""
 FOR_FEW = ("es", "gp")
@@ -187,9 +183,9 @@ def centre(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
 
 def own(method: str, budget: int) -> tuple[tuple[str, Any], ...]:
     """Return the population of a method with its usual settings, where few candidates change it."""
-    usual = 5_000
-    changes = budget < usual and method in OWN_POPULATION
-    return (("population", OWN_POPULATION[method]),) if changes else ()
+    preset = PRESETS[method]
+    changes = preset.population_for(budget) != preset.population
+    return (("population", preset.population),) if changes else ()
 
 
 def crossing(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
@@ -221,7 +217,7 @@ def limited(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
             for points in LADDER[:-1] if not seed else ():
                 yield Planned("limits", 0, case, "epsilon", None, (("points", points),))
             for budget in BUDGETS:
-                for method in LIMITED:
+                for method in CROSSED:
                     small = budget == BUDGETS[0] and method in AT_FEW
                     settings = SMALL_POPULATION if small else own(method, budget)
                     yield Planned("limits", seed, case, method, budget, settings)

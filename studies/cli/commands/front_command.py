@@ -7,7 +7,7 @@ from functools import partial
 from quietarm.metaheuristics import PRESETS
 from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
 from quietarm.ocp.front.points import LEVELS
-from quietarm.ocp.front.time_front import TIME_AND_ENERGY, TimeFront, growing_time_front
+from quietarm.ocp.front.time_front import TIME_AND_ENERGY, TimeFront, time_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
 from quietarm.ocp.solvers.choice import SOLVERS
 from quietarm.studies.answers.read_answers import load_front
@@ -152,25 +152,25 @@ def _of_time(given: Given) -> None:
     longest = given.typed("duration")
     task = given.read_task(**({} if longest else {"duration": 1.0}))  # the search begins from it
     points = given.points if given.typed("points") else _DURATIONS
-    solution: TimeFront | None = None
+    kept = list[TimeFront]()
     trouble = None
     try:
         with counting(points, "durations") as report:
-            for grown in growing_time_front(
+            time_front(
                 task,
                 longest=task.duration if longest else None,
                 points=points,
                 report=report,
+                keep=kept.append,
                 solver=given.read_solver(),
                 **given.pick("bound", "seed"),
-            ):
-                solution = grown  # the last one has all durations, or those until a stop
+            )
     except KeyboardInterrupt as stop:
-        if solution is None:
+        if not kept:
             raise
-        done = f"{len(solution.points)} of {points} points are found and kept"
+        done = f"{len(kept[-1].points)} of {points} points are found and kept"
         trouble = InterruptedCommandError(f"interrupted: {done}", stop)
-    assert solution is not None  # the fastest move's at least
+    solution = kept[-1]  # of all durations, or of those until a stop
     files = answer_files(given.output, partial(pictures.time_front_figure, solution), solution)
     finish(files, *time_front_lines(solution), *given.remarks, trouble=trouble)
 

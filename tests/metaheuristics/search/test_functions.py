@@ -55,7 +55,8 @@ def test_attributes_of_the_function_say_what_no_argument_says():
     def sizes(x):
         return [abs(x[0]), abs(x[1]), -x.sum()]
 
-    sizes.lower, sizes.upper = (-1, -1), (1, 2)
+    sizes.lower = (-1, -1)
+    sizes.upper = (1, 2)
     sizes.objectives = ("one", "other", "gain")
     front = qa.search(sizes, evaluations=100, population=10)
     assert front.objectives == ("one", "other", "gain")
@@ -91,7 +92,7 @@ def test_what_needs_a_task_says_so_in_one_line(tmp_path):
         lambda: NamedProblem.of_front("mine", front).front().task.duration,
     ]
     for need in needs:
-        with pytest.raises((NoTaskError, ValueError), match=r"function|bound") as refused:
+        with pytest.raises(NoTaskError, match="the function parabolas") as refused:
             need()
         assert "\n" not in str(refused.value)
     with pytest.raises(ValueError, match="one of a move"):

@@ -14,7 +14,7 @@ from pymoo.util.ref_dirs import get_reference_directions
 from small_searches import SIXTH, exactly
 
 import quietarm as qa
-from quietarm.metaheuristics import PRESETS, Job, problem_of
+from quietarm.metaheuristics import PRESETS, Job, MoveFunction, problem_of
 from quietarm.metaheuristics.archive import Archive, entering
 from quietarm.metaheuristics.evaluation.stated_figures import check_figures
 from quietarm.metaheuristics.methods.building import directions
@@ -111,7 +111,8 @@ def test_what_enters_is_what_nothing_earlier_dominates(rows, size):
         if not any((earlier <= row).all() for earlier in candidates[:i])
     ]  # fmt: skip
     assert entering(np.empty((0, 3)), candidates).tolist() == expected
-    archive = Archive(SIXTH, 1, THREE)
+    profile = CycloidPolynomial(1)
+    archive = Archive(MoveFunction(SIXTH, profile, bound=0.2, objectives=THREE))
     for begin in range(0, len(candidates), size):
         part = candidates[begin : begin + size]
         archive.add(part[:, :1], part, np.ones(len(part), dtype=bool))
