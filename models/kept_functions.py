@@ -42,6 +42,8 @@ LEAST_SECONDS = 0.02
 MOST_BYTES = 300_000_000
 """Of all files; of those that were not used for longest so many go that a tenth is free."""
 _MOST_OF_A_FILE = 100_000_000
+LOADED = time.time_ns()
+"""When this process read its sources."""
 _OURS = "quietarm."
 """Beginning of the modules whose classes say by their fields all that they are."""
 
@@ -63,7 +65,8 @@ def kept_function(parts: Sequence[Any], build: Callable[[], ca.Function]) -> ca.
         return build()
     text = folder.read(name)
     if text is not None:
-        return ca.Function.deserialize(text.decode("ascii"))
+        with suppress(RuntimeError):  # CasADi no longer has a plugin that it had
+            return ca.Function.deserialize(text.decode("ascii"))
     began = time.process_time()
     function = build()
     if time.process_time() - began > LEAST_SECONDS:
@@ -251,7 +254,8 @@ def _folder_at(stated: str | None) -> Folder | None:
     if stated is not None and stated.strip().lower() in ("", "off", "0"):
         return None
     try:
-        return Folder((_usual_folder() if stated is None else Path(stated)) / "functions")
+        folder = _usual_folder() if stated is None else Path(stated).absolute()
+        return Folder(folder / "functions")
     except (OSError, RuntimeError):  # RuntimeError: there is no home
         return None
 
@@ -282,18 +286,21 @@ class _UnsaidError(Exception):
 
 @cache
 def origin() -> str:
-    """Versions of what builds: what another version left is not used, nor that of other sources."""
+    """Versions of what builds: what another version left is not used, nor that of other sources.
+
+    Of sources that were edited after this process read them nobody knows which it runs: what it
+    keeps is for itself alone.
+    """
     from quietarm import __version__  # the name over all packages, which is loaded by now
 
     sources = Path(__file__).parent.parent
     files = [path for room in ("models", "ocp") for path in (sources / room).rglob("*.py")]
-    stamps = sorted(
-        f"{path.relative_to(sources)} {about.st_size} {about.st_mtime_ns}"
-        for path in files
-        for about in [path.stat()]
-    )
+    about = {str(path.relative_to(sources)): path.stat() for path in files}
+    stamps = sorted((name, one.st_size, one.st_mtime_ns) for name, one in about.items())
+    is_edited = max(one.st_mtime_ns for one in about.values()) > LOADED
+    process = secrets.token_hex() if is_edited else ""
     machine = (platform.machine(), platform.system(), platform.python_version())
-    return repr((__version__, ca.CasadiMeta.version(), np.__version__, machine, stamps))
+    return repr((__version__, ca.CasadiMeta.version(), np.__version__, machine, stamps, process))
 
 
 def _said(value: Any) -> str:

@@ -6,7 +6,7 @@ rosidl_runtime_py makes one; nothing here needs ROS.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,7 +27,8 @@ from quietarm.ocp import (
     plan_move,
 )
 from quietarm.ocp.planning.rigid_motion import rigid_duration
-from quietarm.views.formats.trajectory_points import moving_joints, times_of_points
+from quietarm.views.formats.trajectory_points import Points, points_of, ros_time
+from quietarm.views.tips import tip_words
 
 Array = NDArray[np.float64]
 Message = Mapping[str, Any]
@@ -131,7 +132,7 @@ class MessagePlanner:
         QuietarmError
             When there is no plan within the limits.
         """
-        table = table_of_message(message, "the message").without_repeated
+        table = table_of_message(message, "the message", _USED).without_repeated
         if not table.joints:
             raise ValueError("the message has no joint_names; give those of its positions")
         _check_rest(table)
@@ -144,15 +145,14 @@ class MessagePlanner:
         path = GeometricPath.within(table.positions, self.path_tolerance, joints=table.joints)
         task = self._task(path, duration, speed_scale, acceleration_scale)
         plan = self._plan(task)
-        times = times_of_points(plan, self.rate, self.thin or None)
-        moving = moving_joints(plan, times)
-        answer = _message_of(message, table, times, _all_joints(self.robot, table, moving, others))
-        words = [self._left(table, plan, times, moving), f"{plan.energy:.4g} J"]
+        points = points_of(plan, self.rate, self.thin or None)
+        answer = _message_of(table, _all_joints(self.robot, table, points, others))
+        words = [self._left(table, plan, points), f"{plan.energy:.4g} J"]
         if plan.task.duration > task.duration:
             words.append(f"in {task.duration:.4g} s no plan is within the limits")
         off = max(path.off_straight.max(), 0.0)
         words.append(f"the path is within {off:.2g} rad (or m) of the message's lines")
-        report = f"{plan.task.duration:.4g} s, {len(times)} points: {'; '.join(words)}"
+        report = f"{plan.task.duration:.4g} s, {len(points.times)} points: {'; '.join(words)}"
         return PlannedMessage(answer, plan, report, (*remarks, *path.remarks))
 
     def _duration(self, table: JointTable) -> float:
@@ -196,23 +196,23 @@ class MessagePlanner:
             return correct_in_full(plan) if self.in_full else plan
         raise AssertionError("the last factor returns or raises")
 
-    def _left(
-        self, table: JointTable, plan: Plan, times: Array, moving: tuple[Array, Array, Array]
-    ) -> str:
+    def _left(self, table: JointTable, plan: Plan, points: Points) -> str:
         """Words on what the answer leaves after arrival, and what the message left."""
         if not self.judge:
-            return f"{_mm(plan.residual)} after arrival by its modes"
-        points = JointTable(self.robot.joints, moving[0], times, moving[1], moving[2])
-        words = f"{self._left_by(points)} after arrival by the whole equations"
+            return f"{_words_of(plan.residual)} after arrival by its modes"
+        left = self._left_by(points.table(self.robot.joints))
+        words = f"{left} after arrival by the whole equations"
         if _own_duration(table) is None:
             return words
         return f"{words} (the message as it was timed: {self._left_by(table)})"
 
     def _left_by(self, table: JointTable) -> str:
         motion = TimedMotion.of_table(table)
-        return _mm(evaluate_as_timed(self.robot, motion, payload=self.payload).residual)
+        return _words_of(evaluate_as_timed(self.robot, motion, payload=self.payload).residual)
 
 
+_USED = ("positions", "velocities", "accelerations", "time_from_start")
+"""Entries of a message's points by which it is judged, and has its duration."""
 _SURE = 0.99
 _LONGER = (1.0, 1.1, 1.25, 1.5, 2.0, 3.0)
 """Multiples of a duration that are tried in turn."""
@@ -224,9 +224,9 @@ _AT_START = 0.01
 """How far the first point may be from the start state, as MoveIt allows [rad or m]."""
 
 
-def _mm(length: float) -> str:
-    """A length in millimetres with two digits."""
-    return f"{max(1e3 * length, 1e-3):.2g} mm"
+def _words_of(residual: float) -> str:
+    """What is left, a thousandth of a millimetre at least."""
+    return tip_words(max(residual, 1e-6), "m")
 
 
 def _own_duration(table: JointTable) -> float | None:
@@ -331,12 +331,12 @@ def _held_elsewhere(robot: Robot, places: Mapping[str, float | Following]) -> li
 def _all_joints(
     robot: Robot,
     table: JointTable,
-    moving: Sequence[Array],
+    points: Points,
     others: Mapping[str, float | Following],
-) -> list[Array]:
-    """Positions, speeds and accelerations of the message's joints, in its order."""
+) -> Points:
+    """The points with all of the message's joints, in its order."""
     orders = list[Array]()
-    for order, values in enumerate(moving):
+    for order, values in enumerate(points[1:]):
         columns = dict(zip(robot.joints, values.T))
         for name, other in others.items():
             if isinstance(other, Following):
@@ -345,15 +345,13 @@ def _all_joints(
             else:
                 columns[name] = np.full(len(values), 0.0 if order else other)
         orders.append(np.column_stack([columns[name] for name in table.joints]))
-    return orders
+    return Points(points.times, *orders)
 
 
-def _message_of(
-    message: Message, table: JointTable, times: Array, orders: Sequence[Array]
-) -> dict[str, Any]:
-    """A RobotTrajectory with the points; its header is that of the message."""
-    header = _header_in(message)
-    points = [
+def _message_of(table: JointTable, points: Points) -> dict[str, Any]:
+    """A RobotTrajectory with the points; its stamp is 0: it begins when it is executed."""
+    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": table.frame}
+    rows = [
         {
             "positions": positions.tolist(),
             "velocities": speeds.tolist(),
@@ -361,13 +359,13 @@ def _message_of(
             "effort": [],
             "time_from_start": _duration_message(time),
         }
-        for time, positions, speeds, accelerations in zip(times, *orders)
+        for time, positions, speeds, accelerations in zip(*points)
     ]
     return {
         "joint_trajectory": {
             "header": header,
             "joint_names": list(table.joints),
-            "points": points,
+            "points": rows,
         },
         "multi_dof_joint_trajectory": {"header": header, "joint_names": [], "points": []},
     }
@@ -375,22 +373,5 @@ def _message_of(
 
 def _duration_message(time: float) -> dict[str, int]:
     """A builtin_interfaces/Duration."""
-    seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
+    seconds, nanoseconds = ros_time(time)
     return {"sec": seconds, "nanosec": nanoseconds}
-
-
-def _header_in(message: object) -> dict[str, Any]:
-    """The header of the trajectory in a message, its stamp 0: it begins when it is executed."""
-    frame = ""
-    entries = [message]
-    while entries:
-        entry = entries.pop(0)
-        if isinstance(entry, Mapping):
-            if "points" in entry and "joint_names" in entry and entry["joint_names"]:
-                header = entry.get("header")
-                frame = str(header.get("frame_id", "")) if isinstance(header, Mapping) else ""
-                break
-            entries += entry.values()
-        elif isinstance(entry, list):
-            entries += entry
-    return {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}

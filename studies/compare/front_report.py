@@ -105,7 +105,7 @@ def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, object]:
     # as found, points of the gradient would lose by steps that its line has not
     hidden = group.by_gradient and not comparison.fill
     measures = {
-        heading_of(indicator): None if hidden else _measured(group, indicator)
+        heading_of(indicator): None if hidden else spread_of_indicator(group, indicator)
         for indicator in known_indicators().values()
     }
     front = group.runs[0].front
@@ -135,7 +135,7 @@ def heading_of(indicator: Indicator) -> str:
     return GAP if indicator is HYPERVOLUME else indicator.label
 
 
-def _measured(group: RunsOfMethod, indicator: Indicator) -> str:
+def spread_of_indicator(group: RunsOfMethod, indicator: Indicator) -> str:
     """Return the spread over runs of an indicator, of the hypervolume that of its gap."""
     if indicator is HYPERVOLUME:
         gaps = [gap(run.scores[HYPERVOLUME.name]) for run in group.runs]

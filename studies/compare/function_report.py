@@ -12,9 +12,9 @@ from quietarm.metaheuristics.score import known_indicators
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front
 from quietarm.studies.compare.front_comparison import Comparison, RunsOfMethod, compare_fronts
+from quietarm.studies.compare.front_report import heading_of, spread_of_indicator
 from quietarm.views import pictures
 from quietarm.views.report import Report
-from quietarm.views.report.words import spread_words
 
 
 def functions_report(
@@ -35,6 +35,7 @@ def functions_report(
             "function": next(iter(fronts.values())).task,
             "reference": comparison.reference,
             "indicators": known_indicators(),
+            "heading_of": heading_of,
         },
         {"methods": methods, "runs": _runs(comparison)},
         {"fronts.png": partial(pictures.front_figure, list(fronts.values()))},
@@ -44,8 +45,8 @@ def functions_report(
 def _row(comparison: Comparison, group: RunsOfMethod) -> dict[str, Any]:
     """Medians of a method, with quartiles where there are several seeds."""
     scores = {
-        indicator.label: spread_words(group.spread("scores", name), indicator.form)
-        for name, indicator in known_indicators().items()
+        heading_of(indicator): spread_of_indicator(group, indicator)
+        for indicator in known_indicators().values()
     }
     return {
         "method": group.label,

@@ -6,6 +6,7 @@ import stat
 import subprocess
 import sys
 from dataclasses import dataclass
+from functools import cache
 
 import casadi as ca
 import numpy as np
@@ -156,6 +157,29 @@ def test_what_another_version_left_is_not_used(folder, monkeypatch):
     assert built() == 1
     monkeypatch.setattr(kept_functions, "origin", lambda: "another version")
     assert [built(), built()] == [1, 0]
+
+
+def test_sources_that_were_edited_since_they_were_read_keep_nothing_for_others(folder, monkeypatch):
+    assert built() == 1
+    monkeypatch.setattr(kept_functions, "LOADED", 0)
+    for _ in range(2):
+        process = cache(kept_functions.origin.__wrapped__)
+        monkeypatch.setattr(kept_functions, "origin", process)
+        assert [built(), built()] == [1, 0]
+
+
+def test_what_casadi_does_not_read_is_built(folder):
+    kept_functions.folder_of_user().write(kept_functions.name_of(PARTS), b"no function")
+    assert [built(), built()] == [1, 0]
+
+
+def test_a_folder_by_a_relative_name_is_one(folder, monkeypatch, tmp_path):
+    monkeypatch.setenv("QUIETARM_CACHE", "beside")
+    (tmp_path / "another").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert built() == 1
+    monkeypatch.chdir(tmp_path / "another")
+    assert built() == 0
 
 
 @pytest.mark.parametrize("name", ["off", ""])

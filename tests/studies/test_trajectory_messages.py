@@ -67,7 +67,7 @@ def test_the_answer_is_a_message_of_the_same_joints_along_the_same_path(robot, m
     np.testing.assert_allclose(table[:, 0, 0], 0.1 + 0.5 * share, atol=1e-9)  # on the line
     assert planned.report.startswith("1.3 s, 66 points: ")
     assert "\n" not in planned.report
-    assert planned.remarks[1] == ("joint 'grip' is at 0, and the robot's file holds it at 0.02")
+    assert planned.remarks[0] == ("joint 'grip' is at 0, and the robot's file holds it at 0.02")
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ from quietarm.views.formats.trajectory_points import (
     left_between,
     points_of,
     points_of_several,
+    ros_time,
     times_of_points,
 )
 from quietarm.views.report.templates import templates
@@ -62,7 +63,7 @@ class RosTrajectory(ExportFormat):
     def message(self, plant: Plant, points: Points, *, joint: str = "joint", **others: Any) -> str:
         """The message with the points."""
         rows = [
-            (divmod(round(time * 1e9), 1_000_000_000), [map(_decimal, row) for row in moving])
+            (ros_time(time), [map(_decimal, row) for row in moving])
             for time, *moving in zip(points.times, *(order.tolist() for order in points[1:]))
         ]
         names = plant.joint_names if plant.has_path else (joint,)

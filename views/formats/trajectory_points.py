@@ -54,6 +54,15 @@ class Points(NamedTuple):
     speeds: Array
     accelerations: Array
 
+    def table(self, joints: tuple[str, ...]) -> JointTable:
+        """Return the points as a table of these joints."""
+        return JointTable(joints, self.positions, self.times, self.speeds, self.accelerations)
+
+
+def ros_time(time: float) -> tuple[int, int]:
+    """Return the seconds and nanoseconds of a builtin_interfaces/Duration."""
+    return divmod(round(time * 1e9), 1_000_000_000)
+
 
 def points_of(plan: Plan, rate: float, thin: float | None) -> Points:
     """The points of a move, of its set points where they go through a drive."""
@@ -147,12 +156,11 @@ def left_after_each(
     for plan, end in zip(plans, ends):
         until = times <= end + _AT_ONCE
         part = Points(*(values[until] for values in points))
-        table = JointTable(first.joint_names, part.positions, *part[:1], *part[2:])
         last = plan is plans[-1]
         window = float(plan.task.residual_window) if last or pause == 0 else pause
         answer = evaluate_as_timed(
-            first.robot, TimedMotion.of_table(table), residual_window=window,
-            stiffness=first.stiffness, payload=first.payload,
+            first.robot, TimedMotion.of_table(part.table(first.joint_names)),
+            residual_window=window, stiffness=first.stiffness, payload=first.payload,
         )  # fmt: skip
         most.append(answer.residual)
     shown = ", ".join(tip_words(size, first.tip_unit) for size in most)
@@ -176,11 +184,10 @@ def left_between(plan: Plan, times: Array) -> str:
     if not isinstance(plant, RobotOnPath):
         left = tip_words(residual_at(plan, times, 3), plant.tip_unit)
         return f"{count} {left}, and the plan {tip_words(plan.residual, plant.tip_unit)}"
-    points, speeds, accelerations = moving_joints(plan, times)
-    table = JointTable(plant.joint_names, points, times, speeds, accelerations)
+    points = Points(times, *moving_joints(plan, times))
     answer = evaluate_as_timed(
         plant.robot,
-        TimedMotion.of_table(table),
+        TimedMotion.of_table(points.table(plant.joint_names)),
         residual_window=float(plan.task.residual_window),
         stiffness=plant.stiffness,
         payload=plant.payload,

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from threading import local
 from typing import Any
 
+import numpy as np
+
 from quietarm.models.joint_motion import Array, Expression
 from quietarm.models.robot.path.piecewise import Place
 
@@ -18,21 +20,22 @@ class Here:
     Parameters
     ----------
     parts : tuple
-        What the plant is made of, and the place last. They are compared by what they are, not by
-        what they say, so that symbols can be among them.
+        What the plant is made of, and the place last. Arrays are compared by their numbers, since
+        whoever gave one may write others into it; all else by what it is, so that symbols can be
+        among them.
     knots : ndarray
         Of the plant's tables.
     """
 
     def __init__(self, parts: tuple[Any, ...], knots: Array) -> None:
-        self._parts = parts
+        self._parts = tuple(np.copy(part) if _is_array(part) else part for part in parts)
         self._knots = knots
         self._bases = dict[int, Place]()
         self._groups = dict[str, OfGroup]()
 
     def is_of(self, parts: tuple[Any, ...]) -> bool:
-        """Return whether this is the place of that plant, the very same objects."""
-        return all(mine is other for mine, other in zip(self._parts, parts))
+        """Return whether this is the place of that plant: the same numbers, the very objects."""
+        return all(map(_is_same, self._parts, parts))
 
     def basis(self, terms: int) -> Place:
         """The basis of so many terms."""
@@ -46,6 +49,17 @@ class Here:
         if group not in self._groups:
             self._groups[group] = compute(self, group)
         return self._groups[group]
+
+
+def _is_array(part: object) -> bool:
+    return isinstance(part, np.ndarray)
+
+
+def _is_same(mine: Any, other: Any) -> bool:
+    """Return whether a part is the one that was kept, of an array whether its numbers are."""
+    if _is_array(mine) and _is_array(other):
+        return np.array_equal(mine, other)
+    return mine is other
 
 
 class Latest(local):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +34,8 @@ class JointTable:
         At each point [rad/s, rad/s^2, or of m].
     remarks : tuple of str
         What of the file a path does not use, and what nothing does, in one line each.
+    frame : str
+        In which a message says that its joints' base stands; empty where it does not.
     """
 
     joints: tuple[str, ...]
@@ -42,6 +44,7 @@ class JointTable:
     velocities: Array | None = None
     accelerations: Array | None = None
     remarks: tuple[str, ...] = ()
+    frame: str = ""
 
     def between(self, points: tuple[int, int] | None) -> JointTable:
         """The table from one point to another, counted from 1; all of it without these.
@@ -59,13 +62,21 @@ class JointTable:
                 f"waypoints {first}:{last} are none of {len(self.positions)}; give the numbers of "
                 "the first and the last, as 2:4"
             )
-        rows = slice(first - 1, last)
+        return self._of_rows(slice(first - 1, last))
+
+    def _of_rows(self, rows: slice | Array, *remarks: str) -> JointTable:
+        """Return the table of some of its points, with further remarks."""
         times, velocities, accelerations = (
             None if values is None else values[rows]
             for values in (self.times, self.velocities, self.accelerations)
         )
-        return JointTable(
-            self.joints, self.positions[rows], times, velocities, accelerations, self.remarks
+        return replace(
+            self,
+            positions=self.positions[rows],
+            times=times,
+            velocities=velocities,
+            accelerations=accelerations,
+            remarks=(*self.remarks, *remarks),
         )
 
     @property
@@ -87,18 +98,7 @@ class JointTable:
             for row in rows[:_NAMED].tolist()
         )
         more = f", and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
-        kept = ~repeated
-        velocities, accelerations = (
-            None if rows is None else rows[kept] for rows in (self.velocities, self.accelerations)
-        )
-        return JointTable(
-            self.joints,
-            self.positions[kept],
-            times[kept],
-            velocities,
-            accelerations,
-            (*self.remarks, f"{words}{more}"),
-        )
+        return self._of_rows(~repeated, f"{words}{more}")
 
 
 _AS_FAR = 1e-9
@@ -120,8 +120,12 @@ def read_joint_table(path: str | Path) -> JointTable:
     return _table_of(path)
 
 
-def table_of_message(message: object, what: str) -> JointTable:
+def table_of_message(
+    message: object, what: str, used: Collection[str] = ("positions",)
+) -> JointTable:
     """The points of the JointTrajectory in a message, however deep; its name is for errors.
+
+    Remarks name what its points have beside the entries that are used.
 
     Raises
     ------
@@ -148,7 +152,9 @@ def table_of_message(message: object, what: str) -> JointTable:
     if positions is None or positions.ndim != 2:
         raise ValueError(f"{what} has a point without positions of all joints; write it again")
     others = {entry for point in points for entry, value in point.items() if value}
-    unused = [words for entry, words in _BESIDE_POSITIONS.items() if entry in others]
+    unused = [
+        words for entry, words in _BESIDE_POSITIONS.items() if entry in others and entry not in used
+    ]
     remarks = [f"not used of the trajectory: {', '.join(unused)}"] if unused else []
     if len(filled) > 1:
         remarks.append("not used of the file: a trajectory of joints with several degrees")
@@ -160,7 +166,12 @@ def table_of_message(message: object, what: str) -> JointTable:
         velocities=_of_shape(_entries(points, "velocities"), positions),
         accelerations=_of_shape(_entries(points, "accelerations"), positions),
         remarks=tuple(remarks),
+        frame=_frame_of(trajectory.get("header")),
     )
+
+
+def _frame_of(header: object) -> str:
+    return str(header.get("frame_id", "")) if isinstance(header, Mapping) else ""
 
 
 _CUT_OFF = "..."

@@ -81,6 +81,15 @@ def test_the_path_in_the_tables_is_exact(path):
         assert error <= 1e-9 * max(1.0, np.abs(wanted).max()) ** order
 
 
+def test_an_array_that_is_written_again_is_another_place():
+    plant = ur5_with_bar().along(straight())
+    place, one = np.array([0.2]), np.ones(1)
+    for there in (0.2, 0.7):
+        place[0] = there
+        angle = plant.joints(JointMotion(place, one, one))[0].angle
+        assert angle == pytest.approx(START[0] + there * (END[0] - START[0]), abs=1e-9)
+
+
 def test_tables_of_nothing_have_no_terms():
     """Without friction and rotors that rub: coefficients that are zeros are none, not noise."""
     tables = tables_of(ur5_with_bar(), straight())

@@ -50,7 +50,7 @@ def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder)
     assert code == 0, err
     code, out, err = call("compare a.json c.json")
     assert code == 0, err
-    assert "hypervolume" in out
+    assert "hypervolume gap [%]" in out
 
 
 @pytest.mark.usefixtures("simulator")
