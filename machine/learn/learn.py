@@ -20,7 +20,7 @@ from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
 from quietarm.machine.learn.read_swing import check_length, read_swing
-from quietarm.machine.learn.robots import refuse_delay, robot_evidence
+from quietarm.machine.learn.robots.robot_evidence import refuse_delay, robot_evidence
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, checked_recordings

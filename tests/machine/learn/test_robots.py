@@ -9,8 +9,8 @@ from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
 from quietarm.machine import RobotRecording
-from quietarm.machine.learn.joint_torques import SeenModes
-from quietarm.machine.learn.robot_swing import read_robot_swing
+from quietarm.machine.learn.robots.joint_torques import SeenModes
+from quietarm.machine.learn.robots.robot_swing import read_robot_swing
 from quietarm.machine.recordings.read_recording import Columns
 from quietarm.machine.recordings.read_robot_recording import read_robot_recording
 from quietarm.ocp import FileFormatError

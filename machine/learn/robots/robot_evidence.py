@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from quietarm.machine.identify.identified import Estimate, Identified
 from quietarm.machine.learn.check_columns import refuse_constant
 from quietarm.machine.learn.evidence import Evidence, history_with
-from quietarm.machine.learn.joint_torques import SeenModes
-from quietarm.machine.learn.robot_start import RobotStart, find_robot_start
-from quietarm.machine.learn.robot_swing import (
+from quietarm.machine.learn.robots.joint_torques import SeenModes
+from quietarm.machine.learn.robots.robot_start import RobotStart, find_robot_start
+from quietarm.machine.learn.robots.robot_swing import (
     LEAST_PERIODS,
     SETTLES,
     RobotSwing,

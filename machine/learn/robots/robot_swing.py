@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.learn.joint_torques import SeenModes
+from quietarm.machine.learn.robots.joint_torques import SeenModes
 from quietarm.machine.recordings.recording import noise_of
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.ocp.planning.executed import ArrivalSwing, RecordedArrival
