@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
+from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import check_columns, refuse_constant
 from quietarm.machine.learn.check_move import check_move
 from quietarm.machine.learn.evidence import Evidence, ReadMove, evidence_of, is_by_joint
@@ -157,6 +158,8 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
             "torque": recording.torque,
         },
     )
+    fastest = float(TipModes(task.plant, task.target).frequencies[-1])
+    check_clock(recording.name, recording.time, task.duration, fastest)
     found = find_start(plan, recording)
     doubt = off_the_path(plan, recording, found)
     start = found.time
@@ -168,7 +171,7 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
     if not is_by_joint(recording):
         after = read_swing(recording, arrival, task.plant, task.target)
         better = check_move(plan, recording, found, after.measured.values)
-        if abs(better - start) * float(TipModes(task.plant, task.target).frequencies[-1]) > 1 / 360:
+        if abs(better - start) * fastest > 1 / 360:
             start, arrival = better, better + task.duration
             check_length(recording, arrival, task.plant, task.target)
             after = read_swing(recording, arrival, task.plant, task.target)

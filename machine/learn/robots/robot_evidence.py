@@ -16,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.identified import Estimate, Identified
+from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import refuse_constant
 from quietarm.machine.learn.evidence import Evidence, history_with
+from quietarm.machine.learn.find_start import Start
 from quietarm.machine.learn.robots.joint_torques import SeenModes
-from quietarm.machine.learn.robots.robot_start import RobotStart, find_robot_start
+from quietarm.machine.learn.robots.robot_start import find_robot_start
 from quietarm.machine.learn.robots.robot_swing import (
     LEAST_PERIODS,
     SETTLES,
@@ -95,6 +97,8 @@ def _read(
     plan: Plan, plant: Plant, recording: RobotRecording, delay: float | None
 ) -> ReadRobotMove:
     """The start and the swing of one recording, by the modes of a plant."""
+    fastest = SeenModes(plant, plan.task.target, recording.swinging[0]).frequencies[-1]
+    check_clock(recording.name, recording.time, plan.task.duration, float(fastest))
     if recording.positions is None and plant == plan.task.plant:
         plant = _as_it_ends(plan, recording)  # by springs that are wrong the start is, too
     modes = SeenModes(plant, plan.task.target, recording.swinging[0])
@@ -157,7 +161,7 @@ def _checked(plan: Plan, recordings: Any) -> list[RobotRecording]:
     return checked
 
 
-def _doubt(recording: RobotRecording, start: RobotStart, delay: float | None) -> str:
+def _doubt(recording: RobotRecording, start: Start, delay: float | None) -> str:
     """That a filter's lag is not known, or plays no part; empty where it is known."""
     if recording.swinging[0] == "acceleration":
         return ""

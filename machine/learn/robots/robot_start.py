@@ -8,12 +8,13 @@ millisecond is a degree of a swing of 3 Hz.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.machine.learn.find_start import Start, compared_at, refuse_unexplained
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models import JointMotion, Plant
 from quietarm.models.robot import RobotOnPath
@@ -22,34 +23,11 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.plan import Plan
 
 Array = NDArray[np.float64]
-_POINTS = 200
-"""In which the move is compared with the plan."""
-_BEFORE = 0.1
-"""Share of the duration that is compared before the start, where the joints rest."""
 _LEAST_MET = {"positions": 0.99, "torques": 0.7, "acceleration": 0.5}
 """Share of the power during the move that follows from the plan, or it is another move."""
 
 
-@dataclass(frozen=True)
-class RobotStart:
-    """Where a move begins in a recording.
-
-    Attributes
-    ----------
-    time : float
-        In the recording's own time [s].
-    deviation : float
-        Standard deviation of it [s].
-    signal : str
-        By which it was found.
-    """
-
-    time: float
-    deviation: float
-    signal: str
-
-
-def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> RobotStart:
+def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> Start:
     """The start of a plan's move in a recording of it.
 
     Parameters
@@ -64,35 +42,26 @@ def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> Rob
     Raises
     ------
     ValueError
-        When the recording is shorter than the move, or of another move.
+        When the recording is of another move.
     """
     duration = plan.task.duration
-    lasts = float(np.ptp(recording.time))
-    if lasts < duration:
-        raise ValueError(
-            f"{recording.name}: it lasts {lasts:.4g} s, and the move of the plan {duration:.4g} s; "
-            "record until two periods after arrival, or give the time's unit by --units"
-        )
     signal, values = recording.swinging
     if recording.positions is not None:
         signal, values = "positions", recording.positions
     search = _StartSearch(recording.time, values, _courses(plan, plant, signal), duration)
     place, explained = search.best()
     if explained < _LEAST_MET[signal]:
-        raise ValueError(
-            f"{recording.name}: it is of another move: of its {signal} the plan explains "
-            f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
-        )
+        refuse_unexplained(recording.name, signal, explained)
     time, deviation = search.refined(place)
     if signal == "positions":
         _check_way(plan, recording, time)
-    return RobotStart(time, deviation, signal)
+    return Start(time, signal, explained, deviation)
 
 
 def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
     """What the signals consist of during the move, as a plant has it (points, courses)."""
     duration = plan.task.duration
-    times = duration * np.linspace(-_BEFORE, 1, _POINTS)
+    times = compared_at(duration)
     moving = times >= 0
     task = replace(plan.task.certain, plant=plant, final=None)
     motion = JudgedMotion.of_profile(task, plan.profile, plan.coefficients)
@@ -123,7 +92,7 @@ class _StartSearch:
     def __init__(self, time: Array, values: Array, courses: Array, duration: float) -> None:
         self._time = time
         self._values = values
-        self._at = duration * np.linspace(-_BEFORE, 1, _POINTS)
+        self._at = compared_at(duration)
         moved = courses[:, np.ptp(courses, axis=0) > 1e-9 * np.abs(courses).max()]
         centred = moved - moved.mean(axis=0)
         directions, sizes, _ = np.linalg.svd(centred / centred.std(axis=0), full_matrices=False)
@@ -171,7 +140,7 @@ class _StartSearch:
     def _least(self) -> float:
         """Power below which a window rests."""
         spread = self._values - np.median(self._values, axis=0)
-        return 1e-2 * _POINTS * float((spread**2).mean(axis=0).sum()) + 1e-300
+        return 1e-2 * len(self._at) * float((spread**2).mean(axis=0).sum()) + 1e-300
 
 
 def _check_way(plan: Plan, recording: RobotRecording, start: float) -> None:
