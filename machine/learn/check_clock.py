@@ -46,7 +46,7 @@ def check_clock(name: str, time: Array, duration: float, fastest: float) -> None
         if span / count >= duration and count / step >= least:
             raise ValueError(
                 f"{name}: it lasts {span:.4g} s with a sample every {step:.3g} s, and the move of "
-                f"the plan {duration:.4g} s: is its clock in {unit}? give --units time:{unit}"
+                f"the plan {duration:.4g} s; if its clock is in {unit}, give --units time:{unit}"
             )
     raise ValueError(
         f"{name}: it has {1 / step:.3g} samples a second of a swing of {fastest:.3g} Hz, which "

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,8 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.plan import Plan
 
 Array = NDArray[np.float64]
+_AT_ONCE = 2000
+"""Places that are compared at once: a long recording has hundreds of thousands."""
 _LEAST_MET = {"positions": 0.99, "torques": 0.7, "acceleration": 0.5}
 """Share of the power during the move that follows from the plan, or it is another move."""
 
@@ -72,13 +75,13 @@ def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
     elif signal == "torques":
         courses = [*sample.torques, *sample.W, *sample.ddW]
     else:
-        courses = [*_felt(plant, times[moving], sampled.motion), *sample.W, *sample.ddW]
+        courses = [*felt_at_rest(plant, times[moving], sampled.motion), *sample.W, *sample.ddW]
     whole = np.stack(courses, axis=1)
     before = np.repeat(whole[:1], np.count_nonzero(~moving), axis=0)
     return np.concatenate([before, whole])
 
 
-def _felt(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
+def felt_at_rest(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
     """What an accelerometer at a tip that does not swing feels; of a robot along its path."""
     if not isinstance(plant, RobotOnPath):
         return [motion.speed**2, motion.acceleration]
@@ -103,7 +106,8 @@ class _StartSearch:
         step = float(self._at[1] - self._at[0])
         least, most = float(self._time[0]), float(self._time[-1] - self._at[-1])
         places = np.arange(least, most + step, step)
-        shares = np.array([self._explained(place) for place in places])
+        pieces = [self._shares(places[k : k + _AT_ONCE]) for k in range(0, len(places), _AT_ONCE)]
+        shares = np.concatenate(pieces)
         k = int(shares.argmax())
         return float(places[k]), float(shares[k])
 
@@ -121,22 +125,22 @@ class _StartSearch:
         independent = 20  # what is left changes slowly along the move
         return time, float(np.sqrt(2 * max(least, 1e-16) / max(bend, 1e-16) / independent))
 
-    def _window(self, place: float) -> Array:
-        at = place + self._at
-        columns = [np.interp(at, self._time, column) for column in self._values.T]
-        return np.stack(columns, axis=1)
-
     def _left(self, place: float) -> float:
-        return 1 - self._explained(place)
+        return 1 - float(self._shares(np.array([place]))[0])
 
-    def _explained(self, place: float) -> float:
-        """Share of the power that follows from the courses."""
-        window = self._window(place)
-        centred = window - window.mean(axis=0)
-        power = max(float((centred**2).sum()), self._least)
-        return float(((self._basis.T @ centred) ** 2).sum()) / power
+    def _shares(self, places: Array) -> Array:
+        """Shares of the power that follow from the courses, at places one step apart."""
+        points = len(self._at)
+        step = float(self._at[1] - self._at[0])
+        at = places[0] + self._at[0] + step * np.arange(len(places) + points - 1)
+        columns = [np.interp(at, self._time, column) for column in self._values.T]
+        windows = np.lib.stride_tricks.sliding_window_view(np.stack(columns), points, axis=1)
+        centred = windows - windows.mean(axis=-1, keepdims=True)  # (signals, places, points)
+        power = np.maximum((centred**2).sum(axis=(0, -1)), self._least)
+        shares: Array = ((centred @ self._basis) ** 2).sum(axis=(0, -1)) / power
+        return shares
 
-    @property
+    @cached_property
     def _least(self) -> float:
         """Power below which a window rests."""
         spread = self._values - np.median(self._values, axis=0)

@@ -317,10 +317,11 @@ def clipped(recorded, most):
     return replace(recorded, tip=np.clip(recorded.tip, 0.5 - most, 0.5 + most))
 
 
-@pytest.mark.slow_after(4)
+@pytest.mark.slow_after(5)
 @pytest.mark.parametrize(
     ("change", "words"),
     [
+        (lambda run: stretched(run, 1e3), r"it lasts 2298 s with .* give --units time:ms"),
         (lambda run: cut(run, 0.95), r"it is too short: it ends 0\.7\d periods after arrival"),
         (lambda run: cut(run, 0.5), r"it lasts 0\.5 s, and the move of the plan 0\.7 s"),
         (lambda run: stretched(run, 1.05), r"its clock is off: the move takes 0\.735 s there"),
