@@ -20,6 +20,7 @@ from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import refuse_constant
 from quietarm.machine.learn.evidence import Evidence, history_with
 from quietarm.machine.learn.find_start import Start
+from quietarm.machine.learn.robots.check_signals import check_signals
 from quietarm.machine.learn.robots.joint_torques import SeenModes
 from quietarm.machine.learn.robots.robot_start import find_robot_start
 from quietarm.machine.learn.robots.robot_swing import (
@@ -54,12 +55,16 @@ _OF_SMALL_SWINGS = 2e-3
 
 @dataclass(frozen=True)
 class ReadRobotMove:
-    """When a move began in a recording [s], and what swung after it."""
+    """When a move began in a recording [s], and what swung after it.
+
+    And whether its torques go against the plan's during the move.
+    """
 
     recording: RobotRecording
     start: float
     after: RobotSwing
     doubt: str = ""
+    is_turned: bool = False
 
 
 def robot_evidence(
@@ -103,11 +108,13 @@ def _read(
         plant = _as_it_ends(plan, recording)  # by springs that are wrong the start is, too
     modes = SeenModes(plant, plan.task.target, recording.swinging[0])
     start = find_robot_start(plan, recording, plant)
+    is_turned = check_signals(plan, recording, start.time)
     arrival = start.time + plan.task.duration
     check_length(recording, arrival, modes)
     late = (delay or 0.0) if start.signal == "positions" else 0.0
     after = read_robot_swing(recording, arrival, modes, late, start.deviation)
-    return ReadRobotMove(recording, start.time, after, _doubt(recording, start, delay))
+    doubt = _doubt(recording, start, delay)
+    return ReadRobotMove(recording, start.time, after, doubt, is_turned)
 
 
 def _as_it_ends(plan: Plan, recording: RobotRecording) -> Plant:
@@ -402,16 +409,18 @@ class RobotEvidence(Evidence):
 
     @property
     def _turned(self) -> str:
-        """That torques swing against the plant's; empty where they do not."""
+        """That torques go against the plan's, in the move or after it; empty where they do not."""
         told = self._told_by(self._as_it_swings or self.plant)[-1]
         left = self._left[-1]
         product = complex((told.conj() * left).sum())
         power = float((np.abs(told) * np.abs(left)).sum())
         large = 0.3  # share of what the plain move leaves, from which on a swing has a sign
-        if float(np.abs(told).sum()) < large * self.unsuppressed or product.real > -0.7 * power:
+        is_large = float(np.abs(told).sum()) >= large * self.unsuppressed
+        swings_against = is_large and product.real <= -0.7 * power
+        if not swings_against and not any(one.is_turned for one in self._moves):
             return ""
         return (
-            "warning: the torques swing against the plan's: those that act on the robot from "
+            "warning: the torques go against the plan's: those that act on the robot from "
             "outside, such as tau_ext, have the other sign; give it by --scale torque=-1"
         )
 
