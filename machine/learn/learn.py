@@ -15,12 +15,13 @@ from quietarm.machine.identify.identified import is_frequency
 from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import check_columns, refuse_constant
 from quietarm.machine.learn.check_move import check_move
+from quietarm.machine.learn.check_size import check_size
 from quietarm.machine.learn.evidence import Evidence, ReadMove, evidence_of, is_by_joint
 from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
-from quietarm.machine.learn.read_swing import check_length, read_swing
+from quietarm.machine.learn.read_swing import AfterMove, check_length, read_swing
 from quietarm.machine.learn.robots.robot_evidence import refuse_delay, robot_evidence
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches
@@ -168,6 +169,7 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
     check_columns(plan, recording, arrival)
     if doubt:
         refuse_exchanged(plan, recording, found)
+    note = "" if found.signal == "tip" else check_size(plan, recording, found)
     if not is_by_joint(recording):
         after = read_swing(recording, arrival, task.plant, task.target)
         better = check_move(plan, recording, found, after.measured.values)
@@ -175,7 +177,7 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
             start, arrival = better, better + task.duration
             check_length(recording, arrival, task.plant, task.target)
             after = read_swing(recording, arrival, task.plant, task.target)
-        return ReadMove(recording, start, arrival, after, doubt)
+        return ReadMove(recording, start, arrival, _with(after, note), doubt)
     if recording.angle is None:
         raise ValueError(
             f"{recording.name}: a torque alone does not tell how the tip swings; name the column "
@@ -185,4 +187,9 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
     part = read_torque(recording, start, arrival, task.plant)
     plant = with_values(task.plant, part.values)
     after = swing_by_joint(recording, part, arrival, plant, task.target)
-    return ReadMove(recording, start, arrival, after, doubt)
+    return ReadMove(recording, start, arrival, _with(after, note), doubt)
+
+
+def _with(after: AfterMove, note: str) -> AfterMove:
+    """What was read after a move with one more note, if there is one."""
+    return replace(after, notes=(*after.notes, note)) if note else after

@@ -231,6 +231,16 @@ def test_the_joint_and_its_torque_alone_tell_the_frequency():
 
 
 @pytest.mark.slow
+def test_a_force_in_another_unit_tells_the_same_and_is_doubted():
+    plan = a_plan()
+    run = recording(plan, "angle", "torque", frequency=5.4)
+    right, wrong = (qa.learn(plan, [replace(run, torque=size * run.torque)]) for size in (1.0, 1e3))
+    assert wrong.left == pytest.approx(right.left)
+    assert right.notes == ()
+    assert "warning: run: its torque is 9" in wrong.notes[0]
+
+
+@pytest.mark.slow
 def test_a_right_model_keeps_its_frequency_and_corrects_the_arrival():
     plan = a_plan()
     learned = qa.learn(plan, [recording(plan, "tip", "angle", offset=5e-4)])
@@ -329,6 +339,8 @@ def clipped(recorded, most):
         (lambda run: run.part(slice(None, None, 40)), "samples a second of a swing of 5 Hz"),
         (lambda run: replace(run, angle=0.5 * run.angle), "its joint goes 250 mm, and that of"),
         (lambda run: replace(run, angle=-run.angle), "it is of another move"),
+        (lambda run: replace(run, tip=1e3 * run.tip), r"its tip goes 5\d\d\.?\d* m, .* tip:mm"),
+        (lambda run: replace(run, tip=1e-3 * run.tip), r"its tip goes 0\.000\d+ m, .* tip:m,"),
         (lambda run: clipped(run, 5e-4), "of its samples after arrival are at the sensor's limit"),
     ],
 )
