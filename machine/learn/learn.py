@@ -88,7 +88,13 @@ def learn(
     again = plan.with_entries(learned=history)
     if step:
         task = replace(plan.task, plant=evidence.plant, final=evidence.modes.state(told))
-        again, share = plan_again(plan, task, dearer, solver)
+        again, share, before = plan_again(plan, task, dearer, solver)
+        if again.energy > (1 + dearer) * plan.energy:
+            notes.append(
+                f"the next plan takes {_change(plan.energy, again.energy)} of energy: this move on "
+                f"the machine as it was learned takes {_change(plan.energy, before)}, and the "
+                f"correction {_change(before, again.energy)} of that, which alone --dearer limits"
+            )
         again = again.with_entries(learned=history)
         told = evidence.modes.amplitudes(again.task.final_state)
         if share < 1:
@@ -115,6 +121,11 @@ def learn(
         notes=(*notes, *evidence.doubts),
         modes=evidence.frequencies,
     )
+
+
+def _change(before: float, after: float) -> str:
+    """By how much an energy changes, in words."""
+    return f"{100 * (after / before - 1):+.2g} %"
 
 
 def _evidence(
