@@ -58,7 +58,7 @@ def check_move(plan: Plan, recording: Recording, start: Start, told: Mapping[str
         return start.time
     values = recording.measured[signal].reshape(len(recording.time), -1)[:, 0]
     moving = recording.rows(start.time, start.time + plan.task.duration)
-    if signal == "tip" and _is_cut(values[moving]):
+    if signal == "tip" and is_cut(values[moving]):
         return start.time  # a sensor that sees the tip near its target alone
     motion = _motion(plan, told)
     most = _MOST_UNEXPLAINED[signal]
@@ -116,7 +116,7 @@ def _check_size(plan: Plan, recording: Recording, signal: str, sizes: Array) -> 
     )
 
 
-def _is_cut(values: Array) -> bool:
+def is_cut(values: Array) -> bool:
     """Whether a signal stays at its limit for a good part."""
     much = 0.05
     return bool(saturated(values[:, None]).mean() > much)

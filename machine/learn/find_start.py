@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,11 +49,14 @@ class Start:
         By which it was found.
     explained : float
         Share of that signal's power during the move that follows from the plan.
+    deviation : float
+        Standard deviation of the time [s], where it is told.
     """
 
     time: float
     signal: str
     explained: float
+    deviation: float = 0.0
 
 
 def find_start(plan: Plan, recording: Recording) -> Start:
@@ -62,27 +65,16 @@ def find_start(plan: Plan, recording: Recording) -> Start:
     Raises
     ------
     ValueError
-        When the recording is shorter than the move, of another move or of one that an earlier plan
-        made, or by another clock.
+        When the recording is of another move, of one that an earlier plan made, or by another
+        clock.
     """
-    duration = plan.task.duration
-    lasts = float(np.ptp(recording.time))
-    if lasts < duration:
-        raise ValueError(
-            f"{recording.name}: it lasts {lasts:.4g} s, and the move of the plan {duration:.4g} s; "
-            "record from its start until two periods after its end, or give the time's unit by "
-            "--units time:ms"
-        )
     signal = next(name for name in _LEAST_MET if name in recording.measured)
     values = recording.measured[signal].reshape(len(recording.time), -1)[:, 0]
     search, lag, explained = best_search(plan, recording.time, values, signal)
     if explained < _LEAST_MET[signal]:
         most = _MOST_UNEXPLAINED.get(signal, 0.02)
         search.refuse_other_clock(recording.name, explained, most)
-        raise ValueError(
-            f"{recording.name}: it is of another move: of its {_WORDS[signal]} the plan explains "
-            f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
-        )
+        refuse_unexplained(recording.name, _WORDS[signal], explained)
     lag, explained = search.refined(lag)
     _refuse_earlier(plan, recording, Start(lag, signal, explained))
     # a joint follows the plan closely, and a tip swings beside it
@@ -90,6 +82,19 @@ def find_start(plan: Plan, recording: Recording) -> Start:
     if signal == "angle":
         _check_way(plan, recording, lag, float(search.sizes(lag)[0]))
     return Start(lag, signal, explained)
+
+
+def refuse_unexplained(name: str, signal: str, explained: float) -> NoReturn:
+    """Refuse a recording of whose signal a plan explains too small a share."""
+    raise ValueError(
+        f"{name}: it is of another move: of its {signal} the plan explains "
+        f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
+    )
+
+
+def compared_at(duration: float) -> Array:
+    """Times since its start at which a move is compared with the plan, some before it [s]."""
+    return duration * np.linspace(-_BEFORE, 1, _POINTS)
 
 
 def best_search(
@@ -214,7 +219,7 @@ def courses_of(motion: JudgedMotion, signal: str) -> Sequence[Array]:
     `served` is the angle as a servo without feed-forward lets it follow.
     """
     task = motion.task
-    times = task.duration * np.linspace(-_BEFORE, 1, _POINTS)
+    times = compared_at(task.duration)
     moving = times >= 0
     sampled = motion.sample(times[moving])
     place, speed, acceleration = sampled.joint.T
@@ -255,7 +260,7 @@ class StartSearch:
         self._norms = np.linalg.norm(basis, axis=0)
         self._spread = basis[:, 1:].std(axis=0)
         self._courses, self._triangle = np.linalg.qr(basis / self._norms)
-        self._at = duration * np.linspace(-_BEFORE, 1, _POINTS)
+        self._at = compared_at(duration)
 
     def best(self, stretch: float) -> tuple[float, float]:
         """The place that is met best [s], and the share that is explained there."""

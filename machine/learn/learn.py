@@ -12,15 +12,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
+from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import check_columns, refuse_constant
 from quietarm.machine.learn.check_move import check_move
+from quietarm.machine.learn.check_size import check_size
 from quietarm.machine.learn.evidence import Evidence, ReadMove, evidence_of, is_by_joint
 from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
-from quietarm.machine.learn.read_swing import check_length, read_swing
-from quietarm.machine.learn.robots import refuse_delay, robot_evidence
+from quietarm.machine.learn.read_swing import AfterMove, check_length, read_swing
+from quietarm.machine.learn.robots.robot_evidence import refuse_delay, robot_evidence
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, checked_recordings
@@ -86,7 +88,13 @@ def learn(
     again = plan.with_entries(learned=history)
     if step:
         task = replace(plan.task, plant=evidence.plant, final=evidence.modes.state(told))
-        again, share = plan_again(plan, task, dearer, solver)
+        again, share, before = plan_again(plan, task, dearer, solver)
+        if again.energy > (1 + dearer) * plan.energy:
+            notes.append(
+                f"the next plan takes {_change(plan.energy, again.energy)} of energy: this move on "
+                f"the machine as it was learned takes {_change(plan.energy, before)}, and the "
+                f"correction {_change(before, again.energy)} of that, which alone --dearer limits"
+            )
         again = again.with_entries(learned=history)
         told = evidence.modes.amplitudes(again.task.final_state)
         if share < 1:
@@ -113,6 +121,11 @@ def learn(
         notes=(*notes, *evidence.doubts),
         modes=evidence.frequencies,
     )
+
+
+def _change(before: float, after: float) -> str:
+    """By how much an energy changes, in words."""
+    return f"{100 * (after / before - 1):+.2g} %"
 
 
 def _evidence(
@@ -157,6 +170,8 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
             "torque": recording.torque,
         },
     )
+    fastest = float(TipModes(task.plant, task.target).frequencies[-1])
+    check_clock(recording.name, recording.time, task.duration, fastest)
     found = find_start(plan, recording)
     doubt = off_the_path(plan, recording, found)
     start = found.time
@@ -165,14 +180,15 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
     check_columns(plan, recording, arrival)
     if doubt:
         refuse_exchanged(plan, recording, found)
+    note = "" if found.signal == "tip" else check_size(plan, recording, found)
     if not is_by_joint(recording):
         after = read_swing(recording, arrival, task.plant, task.target)
         better = check_move(plan, recording, found, after.measured.values)
-        if abs(better - start) * float(TipModes(task.plant, task.target).frequencies[-1]) > 1 / 360:
+        if abs(better - start) * fastest > 1 / 360:
             start, arrival = better, better + task.duration
             check_length(recording, arrival, task.plant, task.target)
             after = read_swing(recording, arrival, task.plant, task.target)
-        return ReadMove(recording, start, arrival, after, doubt)
+        return ReadMove(recording, start, arrival, _with(after, note), doubt)
     if recording.angle is None:
         raise ValueError(
             f"{recording.name}: a torque alone does not tell how the tip swings; name the column "
@@ -182,4 +198,9 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
     part = read_torque(recording, start, arrival, task.plant)
     plant = with_values(task.plant, part.values)
     after = swing_by_joint(recording, part, arrival, plant, task.target)
-    return ReadMove(recording, start, arrival, after, doubt)
+    return ReadMove(recording, start, arrival, _with(after, note), doubt)
+
+
+def _with(after: AfterMove, note: str) -> AfterMove:
+    """What was read after a move with one more note, if there is one."""
+    return replace(after, notes=(*after.notes, note)) if note else after

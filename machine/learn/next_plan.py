@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import NamedTuple
 
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.planning.plan import Plan
@@ -13,12 +14,23 @@ from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import ModalState, PointToPoint
 
 
-def plan_again(plan: Plan, task: PointToPoint, dearer: float, solver: Solver) -> tuple[Plan, float]:
+class NextPlan(NamedTuple):
+    """The plan of the next move.
+
+    With the share of the way to its arrival state that it makes, and the energy of the same move on
+    the plant as it is [J]: that of the last plan, where the plant did not change.
+    """
+
+    plan: Plan
+    share: float
+    energy_before: float
+
+
+def plan_again(plan: Plan, task: PointToPoint, dearer: float, solver: Solver) -> NextPlan:
     """The plan of a task that is a little other than that of a plan, from its coefficients.
 
-    And the share of the way to its arrival state that it makes: less than 1 where all of it would
-    take more energy by more than a share, than the plan, or where the plant is another than the
-    same move to the plan's arrival.
+    The share of the way is less than 1 where all of it would take more energy by more than a share,
+    than the plan, or where the plant is another than the same move to the plan's arrival.
 
     Raises
     ------
@@ -44,7 +56,7 @@ def plan_again(plan: Plan, task: PointToPoint, dearer: float, solver: Solver) ->
             f"--dearer {100 * more + 0.1:.2g}%"
         )
     restated = again.restated(settings=plan.record.settings, seconds=time.perf_counter() - began)
-    return restated, share
+    return NextPlan(restated, share, before.energy)
 
 
 def _between(first: ModalState | None, last: ModalState | None, share: float) -> ModalState | None:

@@ -86,6 +86,7 @@ class Recording:
             self._refuse(f" has {whole_count} rows; give {LEAST_ROWS} to {_MOST_ROWS}")
         for name, values in self._on_a_clock(arrays, np.flatnonzero(whole)).items():
             object.__setattr__(self, name, values)
+        object.__setattr__(self, "mended", {**_lost_in_words(whole), **self.mended})
         if self.angle is not None and (largest := np.abs(self.angle).max()) > MOST_ANGLE:
             self._refuse(
                 f": its joint is at {largest:g} rad, or m where it slides; is it in degrees, or in "
@@ -205,6 +206,16 @@ class Recording:
         if np.count_nonzero(dense) < LEAST_ROWS:
             dense[:] = True
         return replace(self, **{name: v[dense].mean(axis=1) for name, v in blocks.items()})
+
+
+def _lost_in_words(whole: NDArray[np.bool_]) -> dict[str, str]:
+    """How many rows are not whole, and which is the first; empty where all are."""
+    lost = np.flatnonzero(~whole)
+    if not len(lost):
+        return {}
+    rows = "1 row is" if len(lost) == 1 else f"{len(lost)} of {len(whole)} rows are"
+    first = f"row {1 + lost[0]}" if len(lost) == 1 else f"the first row {1 + lost[0]}"
+    return {"lost": f"{rows} left out, {first}: a value there is no number"}
 
 
 def checked_recordings(recordings: Any) -> list[Recording]:

@@ -67,9 +67,10 @@ class RobotRecording:
             words = ", ".join(f"{count} of {name}" for name, count in lengths.items())
             raise ValueError(f"{self.name} has {rows} times and {words}; give as many of each")
         side_by_side = np.hstack([*columns.values()])
-        first, doubt = _first_row(np.asarray(self.time, float), side_by_side)
+        time = np.asarray(self.time, float)
+        first, doubt = _first_row(time, side_by_side)
         whole = Recording(
-            np.asarray(self.time, float)[first:],
+            time[first:],
             acceleration=side_by_side[first:],
             name=self.name,
             tick=self.tick,
@@ -119,7 +120,9 @@ def _first_row(time: Array, values: Array) -> tuple[int, str]:
     """
     few = 50
     far = 20.0  # times what changes from row to row thereafter
-    if len(values) < few:
+    has_numbers = np.isfinite(time) & np.isfinite(values).all(axis=1)
+    time, values = time[has_numbers], values[has_numbers]
+    if len(values) < few or not has_numbers[0]:
         return 0, ""
     beside = values[1:few]
     usual = np.maximum(np.abs(np.diff(beside, axis=0)).max(axis=0), noise_of(values))

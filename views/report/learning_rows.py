@@ -25,9 +25,15 @@ def learning_sentence(learned: Learning) -> str:
     )
     if plant.has_path:
         whose = "by noise and moves that differ"
+    if learned.is_done and learned.left <= learned.floor:
+        return (
+            f"nothing more to learn: left {left}, within the floor {whose}, {floor}; the next move "
+            "is this one"
+        )
     if learned.is_done:
         return (
-            f"nothing more to learn: left {left}, floor {whose} {floor}; the next move is this one"
+            f"left {left}, of which nothing is sure enough to correct, beside a floor {whose} of "
+            f"{floor}; the next move is this one: record it several times"
         )
     share = ""
     changed = _changed(learned)

@@ -16,6 +16,7 @@ from quietarm.machine.learn.read_swing import read_swing
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.models import LinearAxis
+from quietarm.views.report.learning_rows import learning_sentence
 
 AXIS = LinearAxis(omega1=2 * np.pi * 5, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
 TASK = qa.PointToPoint(AXIS, target=0.5, duration=0.7)
@@ -217,6 +218,9 @@ def test_the_first_answer_says_what_the_frequency_does():
     model, new = learned.changed["omega1"]
     assert (model, new) == (AXIS.omega1, pytest.approx(2 * np.pi * 5.4, rel=5e-3))
     assert left_by(learned.plan, frequency=5.4) < learned.next_at_most
+    more = learned.plan.energy / plan.energy - 1
+    (note,) = learned.notes  # the correction itself takes less than 2 %
+    assert note.startswith(f"the next plan takes {100 * more:+.2g} % of energy: ")
 
 
 @pytest.mark.slow
@@ -228,6 +232,16 @@ def test_the_joint_and_its_torque_alone_tell_the_frequency():
     _, new = learned.changed["omega1"]
     assert new == pytest.approx(2 * np.pi * 5.4, rel=5e-3)  # 0.1 to 0.4 % on machines
     assert left_by(learned.plan, **machine) < left_by(plan, **machine) / 10
+
+
+@pytest.mark.slow
+def test_a_force_in_another_unit_tells_the_same_and_is_doubted():
+    plan = a_plan()
+    run = recording(plan, "angle", "torque", frequency=5.4)
+    right, wrong = (qa.learn(plan, [replace(run, torque=size * run.torque)]) for size in (1.0, 1e3))
+    assert wrong.left == pytest.approx(right.left)
+    assert not any("warning" in note for note in right.notes)
+    assert any("warning: run: its torque is 9" in note for note in wrong.notes)
 
 
 @pytest.mark.slow
@@ -248,6 +262,7 @@ def test_there_is_nothing_more_to_learn_from_noise():
     assert learned.is_done
     assert learned.plan.coefficients == plan.coefficients
     assert learned.left <= learned.floor
+    assert "within the floor" in learning_sentence(learned)
     again = qa.learn(learned.plan, [recording(plan, "tip", "angle", seed=1)])
     assert len(again.plan.learned.moves) == 1  # it is the same motion
     assert len(again.plan.learned.moves[0].measured) == 2
@@ -317,10 +332,11 @@ def clipped(recorded, most):
     return replace(recorded, tip=np.clip(recorded.tip, 0.5 - most, 0.5 + most))
 
 
-@pytest.mark.slow_after(4)
+@pytest.mark.slow_after(5)
 @pytest.mark.parametrize(
     ("change", "words"),
     [
+        (lambda run: stretched(run, 1e3), r"it lasts 2298 s with .* give --units time:ms"),
         (lambda run: cut(run, 0.95), r"it is too short: it ends 0\.7\d periods after arrival"),
         (lambda run: cut(run, 0.5), r"it lasts 0\.5 s, and the move of the plan 0\.7 s"),
         (lambda run: stretched(run, 1.05), r"its clock is off: the move takes 0\.735 s there"),
@@ -328,6 +344,8 @@ def clipped(recorded, most):
         (lambda run: run.part(slice(None, None, 40)), "samples a second of a swing of 5 Hz"),
         (lambda run: replace(run, angle=0.5 * run.angle), "its joint goes 250 mm, and that of"),
         (lambda run: replace(run, angle=-run.angle), "it is of another move"),
+        (lambda run: replace(run, tip=1e3 * run.tip), r"its tip goes 5\d\d\.?\d* m, .* tip:mm"),
+        (lambda run: replace(run, tip=1e-3 * run.tip), r"its tip goes 0\.000\d+ m, .* tip:m,"),
         (lambda run: clipped(run, 5e-4), "of its samples after arrival are at the sensor's limit"),
     ],
 )
@@ -436,6 +454,7 @@ def test_a_still_plan_is_kept_where_no_tip_is_seen():
     assert learned.is_done
     assert learned.plan.coefficients == plan.coefficients
     assert learned.left <= learned.floor
+    assert "within the floor" in learning_sentence(learned)
 
 
 def test_a_torque_alone_is_refused():

@@ -9,8 +9,8 @@ from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
 from quietarm.machine import RobotRecording
-from quietarm.machine.learn.joint_torques import SeenModes
-from quietarm.machine.learn.robot_swing import read_robot_swing
+from quietarm.machine.learn.robots.joint_torques import SeenModes
+from quietarm.machine.learn.robots.robot_swing import read_robot_swing
 from quietarm.machine.recordings.read_recording import Columns
 from quietarm.machine.recordings.read_robot_recording import read_robot_recording
 from quietarm.ocp import FileFormatError
@@ -222,10 +222,43 @@ def test_springs_are_learned_and_moves_that_differ_are_not_chased(plant):
 
 
 @pytest.mark.slow
-def test_torques_of_the_other_sign_are_said(plant):
+def test_what_the_tool_does_from_outside_is_said_to_have_the_other_sign(plant):
     plan = planned(plant)
-    learned = qa.learn(plan, [executed(plan, factor=0.85, sign=-1.0)[0]], dearer=9.0)
-    assert any("--scale torque=-1" in note for note in learned.notes)
+    learned = qa.learn(plan, [executed(plan, factor=0.85, sign=-0.3)[0]], dearer=9.0)
+    (note,) = (note for note in learned.notes if "--scale torque=-1" in note)
+    assert note.startswith("warning: the torques go against the plan's")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"torques": lambda torques: -torques}, r"they have the other sign.*--scale torque=-1"),
+        ({"torques": lambda torques: torques * [1, -1]}, "b with the other sign"),
+        ({"torques": lambda torques: torques[:, ::-1]}, "the torques of a and b look exchanged"),
+        ({"torques": lambda torques: 1e3 * torques}, r"9\d\d times .*--scale torque=0\.001"),
+        ({"torques": lambda torques: 1e-3 * torques}, r"0\.0009\d+ times .*--scale torque=1000"),
+        ({"time": lambda time: 1e3 * time}, r"it lasts 2198 s .* give --units time:ms"),
+    ],
+)
+def test_a_sign_an_order_or_a_unit_that_is_wrong_is_refused_in_a_line(plant, changes, words):
+    plan = planned(plant)
+    recording, _ = executed(plan)
+    signals = {name: change(getattr(recording, name).copy()) for name, change in changes.items()}
+    with pytest.raises(ValueError, match=words) as refused:
+        qa.learn(plan, [replace(recording, **signals)])
+    assert "\n" not in str(refused.value)
+
+
+def test_rows_without_numbers_are_left_out_and_named(plant):
+    recording, _ = swinging(plant, 4e-3)
+    torques = recording.torques.copy()
+    torques[[3, 700], 1] = np.nan
+    lost = RobotRecording(recording.time, torques=torques, name="run")
+    assert len(lost.time) == len(recording.time) - 2
+    assert lost.notes == (
+        "run: 2 of 1500 rows are left out, the first row 4: a value there is no number",
+    )
 
 
 @pytest.mark.slow

@@ -8,12 +8,14 @@ millisecond is a degree of a swing of 3 Hz.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.machine.learn.find_start import Start, compared_at, refuse_unexplained
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models import JointMotion, Plant
 from quietarm.models.robot import RobotOnPath
@@ -22,34 +24,13 @@ from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.plan import Plan
 
 Array = NDArray[np.float64]
-_POINTS = 200
-"""In which the move is compared with the plan."""
-_BEFORE = 0.1
-"""Share of the duration that is compared before the start, where the joints rest."""
+_AT_ONCE = 2000
+"""Places that are compared at once: a long recording has hundreds of thousands."""
 _LEAST_MET = {"positions": 0.99, "torques": 0.7, "acceleration": 0.5}
 """Share of the power during the move that follows from the plan, or it is another move."""
 
 
-@dataclass(frozen=True)
-class RobotStart:
-    """Where a move begins in a recording.
-
-    Attributes
-    ----------
-    time : float
-        In the recording's own time [s].
-    deviation : float
-        Standard deviation of it [s].
-    signal : str
-        By which it was found.
-    """
-
-    time: float
-    deviation: float
-    signal: str
-
-
-def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> RobotStart:
+def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> Start:
     """The start of a plan's move in a recording of it.
 
     Parameters
@@ -64,35 +45,26 @@ def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> Rob
     Raises
     ------
     ValueError
-        When the recording is shorter than the move, or of another move.
+        When the recording is of another move.
     """
     duration = plan.task.duration
-    lasts = float(np.ptp(recording.time))
-    if lasts < duration:
-        raise ValueError(
-            f"{recording.name}: it lasts {lasts:.4g} s, and the move of the plan {duration:.4g} s; "
-            "record until two periods after arrival, or give the time's unit by --units"
-        )
     signal, values = recording.swinging
     if recording.positions is not None:
         signal, values = "positions", recording.positions
     search = _StartSearch(recording.time, values, _courses(plan, plant, signal), duration)
     place, explained = search.best()
     if explained < _LEAST_MET[signal]:
-        raise ValueError(
-            f"{recording.name}: it is of another move: of its {signal} the plan explains "
-            f"{max(explained, 0.0):.0%} at best; give the recording of this plan's move"
-        )
+        refuse_unexplained(recording.name, signal, explained)
     time, deviation = search.refined(place)
     if signal == "positions":
         _check_way(plan, recording, time)
-    return RobotStart(time, deviation, signal)
+    return Start(time, signal, explained, deviation)
 
 
 def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
     """What the signals consist of during the move, as a plant has it (points, courses)."""
     duration = plan.task.duration
-    times = duration * np.linspace(-_BEFORE, 1, _POINTS)
+    times = compared_at(duration)
     moving = times >= 0
     task = replace(plan.task.certain, plant=plant, final=None)
     motion = JudgedMotion.of_profile(task, plan.profile, plan.coefficients)
@@ -103,13 +75,13 @@ def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
     elif signal == "torques":
         courses = [*sample.torques, *sample.W, *sample.ddW]
     else:
-        courses = [*_felt(plant, times[moving], sampled.motion), *sample.W, *sample.ddW]
+        courses = [*felt_at_rest(plant, times[moving], sampled.motion), *sample.W, *sample.ddW]
     whole = np.stack(courses, axis=1)
     before = np.repeat(whole[:1], np.count_nonzero(~moving), axis=0)
     return np.concatenate([before, whole])
 
 
-def _felt(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
+def felt_at_rest(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
     """What an accelerometer at a tip that does not swing feels; of a robot along its path."""
     if not isinstance(plant, RobotOnPath):
         return [motion.speed**2, motion.acceleration]
@@ -123,7 +95,7 @@ class _StartSearch:
     def __init__(self, time: Array, values: Array, courses: Array, duration: float) -> None:
         self._time = time
         self._values = values
-        self._at = duration * np.linspace(-_BEFORE, 1, _POINTS)
+        self._at = compared_at(duration)
         moved = courses[:, np.ptp(courses, axis=0) > 1e-9 * np.abs(courses).max()]
         centred = moved - moved.mean(axis=0)
         directions, sizes, _ = np.linalg.svd(centred / centred.std(axis=0), full_matrices=False)
@@ -134,7 +106,8 @@ class _StartSearch:
         step = float(self._at[1] - self._at[0])
         least, most = float(self._time[0]), float(self._time[-1] - self._at[-1])
         places = np.arange(least, most + step, step)
-        shares = np.array([self._explained(place) for place in places])
+        pieces = [self._shares(places[k : k + _AT_ONCE]) for k in range(0, len(places), _AT_ONCE)]
+        shares = np.concatenate(pieces)
         k = int(shares.argmax())
         return float(places[k]), float(shares[k])
 
@@ -152,26 +125,26 @@ class _StartSearch:
         independent = 20  # what is left changes slowly along the move
         return time, float(np.sqrt(2 * max(least, 1e-16) / max(bend, 1e-16) / independent))
 
-    def _window(self, place: float) -> Array:
-        at = place + self._at
-        columns = [np.interp(at, self._time, column) for column in self._values.T]
-        return np.stack(columns, axis=1)
-
     def _left(self, place: float) -> float:
-        return 1 - self._explained(place)
+        return 1 - float(self._shares(np.array([place]))[0])
 
-    def _explained(self, place: float) -> float:
-        """Share of the power that follows from the courses."""
-        window = self._window(place)
-        centred = window - window.mean(axis=0)
-        power = max(float((centred**2).sum()), self._least)
-        return float(((self._basis.T @ centred) ** 2).sum()) / power
+    def _shares(self, places: Array) -> Array:
+        """Shares of the power that follow from the courses, at places one step apart."""
+        points = len(self._at)
+        step = float(self._at[1] - self._at[0])
+        at = places[0] + self._at[0] + step * np.arange(len(places) + points - 1)
+        columns = [np.interp(at, self._time, column) for column in self._values.T]
+        windows = np.lib.stride_tricks.sliding_window_view(np.stack(columns), points, axis=1)
+        centred = windows - windows.mean(axis=-1, keepdims=True)  # (signals, places, points)
+        power = np.maximum((centred**2).sum(axis=(0, -1)), self._least)
+        shares: Array = ((centred @ self._basis) ** 2).sum(axis=(0, -1)) / power
+        return shares
 
-    @property
+    @cached_property
     def _least(self) -> float:
         """Power below which a window rests."""
         spread = self._values - np.median(self._values, axis=0)
-        return 1e-2 * _POINTS * float((spread**2).mean(axis=0).sum()) + 1e-300
+        return 1e-2 * len(self._at) * float((spread**2).mean(axis=0).sum()) + 1e-300
 
 
 def _check_way(plan: Plan, recording: RobotRecording, start: float) -> None:

@@ -16,11 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.identified import Estimate, Identified
+from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import refuse_constant
 from quietarm.machine.learn.evidence import Evidence, history_with
-from quietarm.machine.learn.joint_torques import SeenModes
-from quietarm.machine.learn.robot_start import RobotStart, find_robot_start
-from quietarm.machine.learn.robot_swing import (
+from quietarm.machine.learn.find_start import Start
+from quietarm.machine.learn.robots.check_signals import check_signals
+from quietarm.machine.learn.robots.joint_torques import SeenModes
+from quietarm.machine.learn.robots.robot_start import find_robot_start
+from quietarm.machine.learn.robots.robot_swing import (
     LEAST_PERIODS,
     SETTLES,
     RobotSwing,
@@ -52,12 +55,16 @@ _OF_SMALL_SWINGS = 2e-3
 
 @dataclass(frozen=True)
 class ReadRobotMove:
-    """When a move began in a recording [s], and what swung after it."""
+    """When a move began in a recording [s], and what swung after it.
+
+    And whether its torques go against the plan's during the move.
+    """
 
     recording: RobotRecording
     start: float
     after: RobotSwing
     doubt: str = ""
+    is_turned: bool = False
 
 
 def robot_evidence(
@@ -95,15 +102,19 @@ def _read(
     plan: Plan, plant: Plant, recording: RobotRecording, delay: float | None
 ) -> ReadRobotMove:
     """The start and the swing of one recording, by the modes of a plant."""
+    fastest = SeenModes(plant, plan.task.target, recording.swinging[0]).frequencies[-1]
+    check_clock(recording.name, recording.time, plan.task.duration, float(fastest))
     if recording.positions is None and plant == plan.task.plant:
         plant = _as_it_ends(plan, recording)  # by springs that are wrong the start is, too
     modes = SeenModes(plant, plan.task.target, recording.swinging[0])
     start = find_robot_start(plan, recording, plant)
+    is_turned = check_signals(plan, recording, start.time)
     arrival = start.time + plan.task.duration
     check_length(recording, arrival, modes)
     late = (delay or 0.0) if start.signal == "positions" else 0.0
     after = read_robot_swing(recording, arrival, modes, late, start.deviation)
-    return ReadRobotMove(recording, start.time, after, _doubt(recording, start, delay))
+    doubt = _doubt(recording, start, delay)
+    return ReadRobotMove(recording, start.time, after, doubt, is_turned)
 
 
 def _as_it_ends(plan: Plan, recording: RobotRecording) -> Plant:
@@ -157,7 +168,7 @@ def _checked(plan: Plan, recordings: Any) -> list[RobotRecording]:
     return checked
 
 
-def _doubt(recording: RobotRecording, start: RobotStart, delay: float | None) -> str:
+def _doubt(recording: RobotRecording, start: Start, delay: float | None) -> str:
     """That a filter's lag is not known, or plays no part; empty where it is known."""
     if recording.swinging[0] == "acceleration":
         return ""
@@ -398,16 +409,18 @@ class RobotEvidence(Evidence):
 
     @property
     def _turned(self) -> str:
-        """That torques swing against the plant's; empty where they do not."""
+        """That torques go against the plan's, in the move or after it; empty where they do not."""
         told = self._told_by(self._as_it_swings or self.plant)[-1]
         left = self._left[-1]
         product = complex((told.conj() * left).sum())
         power = float((np.abs(told) * np.abs(left)).sum())
         large = 0.3  # share of what the plain move leaves, from which on a swing has a sign
-        if float(np.abs(told).sum()) < large * self.unsuppressed or product.real > -0.7 * power:
+        is_large = float(np.abs(told).sum()) >= large * self.unsuppressed
+        swings_against = is_large and product.real <= -0.7 * power
+        if not swings_against and not any(one.is_turned for one in self._moves):
             return ""
         return (
-            "warning: the torques swing against the plan's: those that act on the robot from "
+            "warning: the torques go against the plan's: those that act on the robot from "
             "outside, such as tau_ext, have the other sign; give it by --scale torque=-1"
         )
 
