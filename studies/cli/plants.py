@@ -7,7 +7,6 @@ from dataclasses import MISSING, fields, replace
 from math import tau
 from typing import Any
 
-
 from quietarm.machine.identify import Identified
 from quietarm.machine.identify.identified import LEAST_OF_FREQUENCY, is_modal
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
