@@ -97,7 +97,7 @@ def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     rows = [(one_line(name), one_line(value)) for name, value in rows]
     if console.width < max(len(name) for name, _ in rows) + least_value:
         for name, value in rows:
-            print_lines(console, name, f"  {value}")
+            print_lines(console, name, *wrapped(f"  {value}", max(console.width, LEAST_WIDTH)))
         return
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)

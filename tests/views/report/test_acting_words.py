@@ -1,4 +1,4 @@
-"""The first line of a front with a band: its motion that acts first, or why none does at arrival."""
+"""The first line of a front with a band: which motion acts first, or why none on arrival."""
 
 from dataclasses import replace
 
