@@ -11,6 +11,7 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
+from quietarm.interrupts import note_interrupts
 from quietarm.metaheuristics.score import share_of_box
 from quietarm.metaheuristics.thinning import thinned
 from quietarm.ocp import Front, Mark
@@ -93,8 +94,21 @@ class Archive:
         """Take evaluated candidates, of which those that are usable may enter.
 
         F are their objectives with any noise, `true` those without, and so many evaluations were
-        spent beyond one for each.
+        spent beyond one for each. Ctrl-C waits until all of them are taken.
         """
+        with note_interrupts() as came:
+            self._take(X, F, usable, true, repeated)
+        if came:
+            raise came[0]
+
+    def _take(
+        self,
+        X: Array,
+        F: Array,
+        usable: NDArray[np.bool_],
+        true: Array | None,
+        repeated: int,
+    ) -> None:
         # evaluations between neighbouring marks: 24 in a decade, at the ends of generations
         step = 10 ** (1 / 24)
         seconds = self.seconds
@@ -174,9 +188,16 @@ class Archive:
         )
 
     def _let_enter(self) -> None:
-        """Compare what waits with what entered before, and with what waits before it."""
+        """Compare what waits with what entered before; Ctrl-C leaves no half of it."""
         if not self._waiting:
             return
+        with note_interrupts() as came:
+            self._let_all_enter()
+        if came:
+            raise came[0]
+
+    def _let_all_enter(self) -> None:
+        """Compare what waits with what entered before, and with what waits before it."""
         columns = [np.concatenate(column) for column in zip(*self._waiting)]
         self._waiting = []
         self._waiting_rows = 0

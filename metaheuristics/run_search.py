@@ -92,6 +92,7 @@ def search(
     threads: int = 1,
     start: Front | None = None,
     report: Callable[[SearchProgress], None] | None = None,
+    begun: Callable[[SearchRun], None] | None = None,
     objectives: Sequence[str] = RESIDUAL_AND_ENERGY,
     units: Sequence[str] | None = None,
     constraints: Sequence[str] | None = None,
@@ -138,6 +139,9 @@ def search(
         Its points are in the first population, as many as that holds.
     report : callable, optional
         Called with a `SearchProgress` after every generation.
+    begun : callable, optional
+        Called with the run before its first candidate: after Ctrl-C the `front` of that run has
+        what was found until then.
     objectives : sequence of str
         Residual and energy, and peaks beside them, as ``"peak_torque"``; of a function any names.
     energy : callable, optional
@@ -208,6 +212,8 @@ def search(
         noise=noise,
         reevaluate=reevaluate,
     )
+    if begun is not None:
+        begun(run)
     # pymoo's NSGA-III leaves all warnings of the process switched off
     with warnings.catch_warnings():
         run.finish(report)

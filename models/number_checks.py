@@ -178,13 +178,31 @@ def with_article(noun: str) -> str:
 
 def unknown(what: str, name: str, known: Collection[str], also: str = "") -> str:
     """The message about a name that is not known."""
-    return f"unknown {what} {quoted(name)}{nearest(name, known)} (known: {listed(known)}{also})"
+    return (
+        f"unknown {what} {quoted(name)}{nearest(name, known)} (known: {_near(name, known)}{also})"
+    )
 
 
 def has_no(owner: str, what: str, name: str, known: Collection[str]) -> str:
     """The message about a name that something does not have."""
-    names = listed(known) or "none"
+    names = _near(name, known) or "none"
     return f"{owner} has no {what} {quoted(name)}{nearest(name, known)} (it has: {names})"
+
+
+def _near(name: str, known: Collection[str]) -> str:
+    """List known names: all of a few, and of many those that are most like the unknown one."""
+    few = 13  # the commands are so many
+    shown = 6
+    if len(known) <= few:
+        return listed(known)
+    alike = difflib.SequenceMatcher(b=name.lower())
+
+    def likeness(other: str) -> float:
+        alike.set_seq1(other.lower())
+        return alike.ratio()
+
+    near = sorted(known, key=likeness, reverse=True)[:shown]
+    return f"{listed(near)} and {len(known) - shown} more"
 
 
 def nearest(name: str, known: Collection[str]) -> str:

@@ -32,7 +32,7 @@ from typing import Any, Literal, ParamSpec, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 
-INTERRUPTED = "interrupted; what was written until then is kept"
+INTERRUPTED = "interrupted; only files that were written before are kept"
 """The last word of a command that was stopped."""
 _IMPATIENT_SECONDS = 1.0
 """So long after a press that waits, the next one no longer waits."""

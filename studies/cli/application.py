@@ -7,6 +7,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -175,5 +176,6 @@ def _place_of(error: BaseException) -> str:
 def _complain(message: str, status: int) -> int:
     # a name in it may have a hundred thousand letters; the remedy stands at its end
     line = cut(one_line(" ".join(message.split())), 2000)
-    click.echo(f"quietarm: {line}", err=True)
+    with suppress(BrokenPipeError):  # nobody reads it; the status says it all the same
+        click.echo(f"quietarm: {line}", err=True)
     return status

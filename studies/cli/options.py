@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
 
 from quietarm.metaheuristics.parallel import scheduler_address
 from quietarm.models import load_plant_file
@@ -38,6 +37,7 @@ from quietarm.studies.cli.quantities import (
 from quietarm.studies.cli.types import INPUT, SETTING, TIME, Named, Parsed
 from quietarm.views.report.progress import count, working
 from quietarm.views.report.saving import STDOUT
+from quietarm.views.report.terminal import ErrorConsole
 
 
 def option(*names: str, help: str, multiple: bool = False, **settings: Any) -> click.Option:  # noqa: A002
@@ -136,9 +136,9 @@ def _refuse_lost_answer(ctx: click.Context) -> None:
         raise ValueError("standard output is closed; give the name of a file")
 
 
-def progress_console() -> Console:
+def progress_console() -> ErrorConsole:
     """Standard error, unless --quiet."""
-    return Console(stderr=True, quiet=click.get_current_context().params["quiet"])
+    return ErrorConsole(quiet=click.get_current_context().params["quiet"])
 
 
 def busy(what: str) -> AbstractContextManager[None]:

@@ -77,8 +77,9 @@ def _check_format(path: Path, kinds: Mapping[str, str], formats: Sequence[str]) 
             return form.check_path(path)
         if path.suffix.lower() in form.beside:
             format_of(path)  # which says what it stands beside
-    listed = _listed(kinds, formats)
-    raise ValueError(f"{path} is none of the files that it writes; give {listed}")
+    further = [form.endings[0] for form in formats_of(*formats) if form.endings[0] not in kinds]
+    also = f"; or {', '.join(further)}" if further else ""
+    raise ValueError(f"{path} is none of the files that it writes; give {_listed(kinds, ())}{also}")
 
 
 def _listed(kinds: Mapping[str, str], formats: Sequence[str]) -> str:

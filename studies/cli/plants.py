@@ -7,8 +7,6 @@ from dataclasses import MISSING, fields, replace
 from math import tau
 from typing import Any
 
-from rich.console import Console
-
 from quietarm.machine.identify import Identified
 from quietarm.machine.identify.identified import LEAST_OF_FREQUENCY, is_modal
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
@@ -18,7 +16,7 @@ from quietarm.ocp.checks import unknown
 from quietarm.ocp.task import RANGE_OF_BAND
 from quietarm.studies.cli.quantities import MEASURED, once, parse_parameters
 from quietarm.views.report.acting_words import ranges_words
-from quietarm.views.report.terminal import print_lines
+from quietarm.views.report.terminal import ErrorConsole, print_lines
 from quietarm.views.report.words import note_lines
 
 Kind = type[Plant] | Identified | Robot
@@ -139,7 +137,7 @@ def warn_of_notes(plant: Plant) -> None:
     """Say before the work what a plant's files leave open or have wrong."""
     lines = note_lines(plant)
     if lines:
-        print_lines(Console(stderr=True), *lines)
+        print_lines(ErrorConsole(), *lines)
 
 
 def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:
@@ -153,7 +151,7 @@ def warn_of_payload(kind: Kind, plant: Plant, changed: Collection[str]) -> None:
         return
     loaded = beam.carrying(mass).omega / tau
     print_lines(
-        Console(stderr=True),
+        ErrorConsole(),
         f"warning: tip_mass is {mass:.4g} kg, and was {beam.tip_mass:.4g} kg when the frequency of "
         f"{beam.omega / tau:.4g} Hz was measured, which is kept; if the payload has changed, give "
         f"--set omega={loaded:.4g}Hz, by the beam's equation, or record it anew",

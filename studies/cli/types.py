@@ -45,6 +45,12 @@ class Named(click.Choice):  # pyright: ignore[reportMissingTypeArgument]
         self._what = what
         self._none = {spelling(name): why for name, why in (none or {}).items()}
 
+    def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str | None:
+        """The names as a help shows them, or METHOD where they are too many for its line."""
+        most = 60
+        names = super().get_metavar(param, ctx) or ""
+        return names if len(names) <= most else self._what.upper()
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name."""
         self.choices = tuple(self._list_names())  # a user's own file may have brought more

@@ -2,7 +2,7 @@
 
 import pytest
 
-from quietarm.models.number_checks import joined, with_article
+from quietarm.models.number_checks import joined, unknown, with_article
 
 
 @pytest.mark.parametrize(
@@ -22,3 +22,11 @@ def test_a_list_ends_in_its_last_word():
     assert joined(["a"]) == "a"
     assert joined(["a", "b"], "or") == "a or b"
     assert joined(iter("abc")) == "a, b and c"
+
+
+def test_of_many_known_names_a_message_lists_those_that_are_most_alike():
+    names = [f"method{number}" for number in range(30)]
+    said = unknown("method", "methd17", names)
+    assert "did you mean 'method17'? (known: method17, " in said
+    assert said.endswith(" and 24 more)")
+    assert unknown("letter", "e", "abcd") == "unknown letter 'e' (known: a, b, c, d)"

@@ -49,16 +49,29 @@ def path_lines(motion: JudgedMotion) -> list[str]:
 def band_lines_of_front(front: Front) -> list[str]:
     """The first line of a front whose task has a band: of its motion that acts first.
 
-    Of several the cheapest.
+    Of several the cheapest. Points keep their residuals at the ends of the ranges of errors alone,
+    so it may be that none of them keeps the band from arrival on, and that a plan does.
     """
-    limit = front.task.band_limit
-    if limit is None:
+    task = front.task
+    limit = task.band_limit
+    if limit is None or task.band is None:
         return []
-    if all(point.residual > limit for point in front.points):
-        return [f"no motion leaves less than {tip_words(limit, 'm')}, the band over its margin"]
     motions = [front.judged(point) for point in front.points]
     first = min(motions, key=lambda motion: (motion.acts_after, motion.energy))
-    return [f"{acting_words(first)}, by {first.energy:.4g} J"]
+    acts_late = task.duration < first.acts_after < math.inf
+    if acts_late:
+        return [
+            f"no motion of this front stays within {tip_words(task.band, 'm')} from arrival on "
+            f"{ranges_words(task.ranges)}; the first may act after {first.acts_after:.3g} s, by "
+            f"{first.energy:.4g} J; quietarm plan --band looks for one that does"
+        ]
+    words = f"{acting_words(first)}, by {first.energy:.4g} J"
+    if all(point.residual > limit for point in front.points):
+        words += (
+            f"; no motion of this front leaves less than {tip_words(limit, 'm')}, the band over "
+            "its margin; quietarm plan --band looks for one that does"
+        )
+    return [words]
 
 
 def band_lines(plan: Plan) -> list[str]:

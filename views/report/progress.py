@@ -24,7 +24,7 @@ from rich.progress import (
 from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
 from quietarm.ocp.escapes import one_line
-from quietarm.views.report.terminal import print_lines
+from quietarm.views.report.terminal import LEAST_WIDTH, print_lines, wrapped
 from quietarm.views.tips import tip_scale, tip_words
 
 PLAIN_SECONDS = 2.0
@@ -123,7 +123,7 @@ class Lines:
         due = last or now - self.said >= PLAIN_SECONDS
         if due and not self.console.is_terminal:
             self.said = now
-            print_lines(self.console, line)
+            print_lines(self.console, *wrapped(line, LEAST_WIDTH))
 
 
 @contextmanager

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import tau
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quietarm.models import Beam, GeometricPath, Robot
 from quietarm.models.dimensions import DAMPING, EFFORT, INERTIA, STIFFNESS, WAY, Unit, words_of
@@ -38,6 +40,19 @@ def robot_rows(robot: Robot, path: GeometricPath) -> list[Row]:
         *((WARNING, note.words) for note in robot.notes),
         *_path_rows(robot, path),
     ]
+
+
+def robot_words(robot: Robot, path: GeometricPath, way: str = "the path") -> str:
+    """Return the answer in a sentence: how a robot swings along a path, and how far it sags."""
+    numbers = modes_on(robot, path)
+    places = _places(robot, path)
+    hertz = np.array([place.frequencies[list(numbers)] for place in places]) / tau
+    sag = 1e3 * max(place.sag for place in places)
+    return (
+        f"{robot.description.name}, {counted(len(robot.joints), 'driven joint')}: along {way} it "
+        f"swings at {hertz.min():.3g} to {hertz.max():.3g} Hz, and sags by up to "
+        f"{sag:.3g} mm"
+    )
 
 
 def usual_path(robot: Robot) -> GeometricPath:
@@ -173,40 +188,61 @@ def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
     slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]
     numbers = modes_on(robot, path)
     rows = list[Row]()
-    for place in _PLACES:
-        q = path(place)
-        p = sag_at(robot.dynamics, q)
-        squares, _ = modes_at(robot.dynamics, q, p)
-        hertz = [f"{value / tau:.3g}" for value in squares[: max(numbers) + 1 + _MORE]]
+    for place in _places(robot, path):
+        seen = place.frequencies[: max(numbers) + 1 + _MORE]
+        hertz = [f"{value / tau:.3g}" for value in seen]
         followed = ", ".join(hertz[number] for number in numbers)
         others = [value for number, value in enumerate(hertz) if number not in numbers]
         left = f" (left out: {', '.join(others)} ...)" if others else ""
-        sag = 1e3 * float(np.linalg.norm(robot.sag(q)))
         positions = ", ".join(
             f"{round(x, 9) + 0.0:.4g}m" if slide else f"{round(np.degrees(x), 6) + 0.0:.4g}deg"
-            for x, slide in zip(q, slides)
+            for x, slide in zip(place.positions, slides)
         )
+        sag = 1e3 * place.sag
         rows.append((f"at {positions}", f"modes {followed} Hz{left}, sag {sag:.3g} mm"))
     return [*way_rows(robot, path), *rows, *_left_out_rows(robot, path, numbers)]
 
 
+@dataclass(frozen=True)
+class _Place:
+    """A place of a path: positions of the joints, all frequencies [rad/s], and the sag [m]."""
+
+    positions: NDArray[np.float64]
+    frequencies: NDArray[np.float64]
+    sag: float
+
+
+def _places(robot: Robot, path: GeometricPath) -> list[_Place]:
+    """Return the ends and the middle of a path."""
+    places = list[_Place]()
+    for at in _PLACES:
+        q = path(at)
+        frequencies, _ = modes_at(robot.dynamics, q, sag_at(robot.dynamics, q))
+        places.append(_Place(q, frequencies, float(np.linalg.norm(robot.sag(q)))))
+    return places
+
+
 def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
-    """What to know of a robot's path: what its file had more, and how far its spline swings out."""
-    rows = [("path", words) for words in path.remarks]
+    """What to know of a robot's path, in one row: its file's rest, and how far it swings out."""
+    words = [*path.remarks, *_off_straight_words(robot, path)]
+    return [("path", "; ".join(words))] if words else []
+
+
+def _off_straight_words(robot: Robot, path: GeometricPath) -> list[str]:
+    """Say how far a path is from the straight lines between waypoints, if it is."""
     units = [WAY.of(robot.kind_of(name)) for name in robot.joints]
     off = sorted(zip(path.off_straight.tolist(), units, robot.joints), reverse=True)
     seen = [(size, unit, name) for size, unit, name in off if size > _STRAIGHT]
     if not seen:
-        return rows
+        return []
     (size, unit, name), *others = seen
     less = ", ".join(f"{other} {smaller:.2g} {own}" for smaller, own, other in others)
     what = "path" if path.lines else "spline"
-    words = (
+    return [
         f"the {what} is up to {size:.2g} {unit} from the straight lines between waypoints, at "
         f"joint {name}{f' ({less})' if less else ''}, and the tip "
         f"{1e3 * robot.off_straight(path):.2g} mm"
-    )
-    return [*rows, ("path", words)]
+    ]
 
 
 def _left_out_rows(robot: Robot, path: GeometricPath, numbers: Sequence[int]) -> list[Row]:

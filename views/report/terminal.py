@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import textwrap
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -20,6 +22,21 @@ if TYPE_CHECKING:
 
 LEAST_WIDTH = 100
 """Columns that a sentence may take, however narrow the console."""
+
+
+class ErrorConsole(Console):
+    """Standard error, for progress and warnings: the work goes on when its reader has gone."""
+
+    def __init__(self, *, quiet: bool = False) -> None:
+        super().__init__(stderr=True, quiet=quiet)
+
+    def on_broken_pipe(self) -> None:
+        """Say nothing more, here or elsewhere; rich's own ends the process."""
+        self.quiet = True
+        with suppress(OSError, ValueError):  # a stream of Python's alone has no number
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self.file.fileno())
+            os.close(nowhere)
 
 
 def show_all(console: Console, *parts: Report | Sequence[tuple[str, str]] | str) -> None:
@@ -80,7 +97,7 @@ def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     rows = [(one_line(name), one_line(value)) for name, value in rows]
     if console.width < max(len(name) for name, _ in rows) + least_value:
         for name, value in rows:
-            print_lines(console, name, f"  {value}")
+            print_lines(console, name, *wrapped(f"  {value}", max(console.width, LEAST_WIDTH)))
         return
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)

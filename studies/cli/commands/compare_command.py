@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import click
-from rich.console import Console
 
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import BAND as BAND_OPTIONS
@@ -25,7 +24,7 @@ from quietarm.studies.cli.types import INPUT, NAMES, Named, Parsed
 from quietarm.studies.compare.compared_motions import SAMPLES
 from quietarm.studies.compare.plan_comparison import DURATIONS
 from quietarm.views.report import Report
-from quietarm.views.report.terminal import print_lines
+from quietarm.views.report.terminal import ErrorConsole, print_lines
 
 if TYPE_CHECKING:
     from quietarm.ocp import Front, Plan, PointToPoint, Solver
@@ -168,5 +167,5 @@ def _with_floor(comparison: Comparison, solver: Solver) -> Comparison:
     try:
         return replace(comparison, floor=energy_floor(comparison.task, solver=solver).energy)
     except QuietarmError as error:
-        print_lines(Console(stderr=True), f"no free motion: {error}")
+        print_lines(ErrorConsole(), f"no free motion: {error}")
         return comparison

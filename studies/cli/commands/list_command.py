@@ -13,7 +13,7 @@ from quietarm.studies.cli.outputs import FOLDER, finish, output_option
 from quietarm.studies.cli.plants import OF_ROBOTS
 from quietarm.studies.cli.robot_options import path_of
 from quietarm.views.report.catalogue_rows import KINDS, catalogue_rows
-from quietarm.views.report.robot_rows import robot_rows, usual_path
+from quietarm.views.report.robot_rows import robot_rows, robot_words, usual_path
 from quietarm.views.report.saving import inside
 from quietarm.views.report.words import counted
 
@@ -47,8 +47,10 @@ def list_(given: Given) -> None:
     for name in names:
         if name.endswith(OF_ROBOTS):
             robot = Robot.load(name)
-            path = robot.along(path_of(given, robot) or usual_path(robot)).path
-            shown += [f"{robot.description.name}:", robot_rows(robot, path)]
+            asked = path_of(given, robot)
+            path = robot.along(asked or usual_path(robot)).path
+            way = "the path" if asked else "a straight path of its joints"
+            shown += [robot_words(robot, path, way), robot_rows(robot, path)]
             continue
         title, rows = catalogue_rows(name, plants)
         shown += [f"{title}:", [(f"  {entry}", words) for entry, words in rows]]

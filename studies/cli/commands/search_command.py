@@ -13,7 +13,11 @@ import click
 
 from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.named_method import POLISH
-from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE, default_of_function
+from quietarm.metaheuristics.run_search import (
+    SECONDS_OF_CANDIDATE,
+    SearchRun,
+    default_of_function,
+)
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.studies.answers.read_answers import load_front
@@ -52,6 +56,7 @@ from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.function_rows import function_lines
 from quietarm.views.report.progress import search_display
 from quietarm.views.report.saving import STDOUT, File
+from quietarm.views.report.words import counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -138,6 +143,7 @@ def search(given: Given) -> None:
     if not given.function:  # how long a user's own takes nobody knows
         refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     fronts = list[Front]()
+    stopped = list[Front]()
     trouble: QuietarmError | None = None
     with search_display(progress_console()) as display:
         if not several and workers == 1:
@@ -146,23 +152,26 @@ def search(given: Given) -> None:
             run = partial(_search, asked)
             for front in side_by_side(run, seeds, workers):
                 fronts.append(front)
+                asked.run = None
                 if several:
                     _save_at_once(given.output, front)
                 display.finish(front)
         except (KeyboardInterrupt, LostWorkersError) as error:
-            if not fronts:
+            stopped = asked.until_the_stop()
+            if not (fronts or stopped):
                 raise
-            done = f"{len(fronts)} of {given.runs} seeds are done and kept"
+            words = _kept_words(fronts, stopped, given.runs, is_written=bool(given.output))
             if isinstance(error, KeyboardInterrupt):
-                trouble = InterruptedCommandError(f"interrupted: {done}", error)
+                trouble = InterruptedCommandError(f"interrupted: {words}", error)
             else:
-                trouble = QuietarmError(f"{error}: {done}")
+                trouble = QuietarmError(f"{error}: {words}")
     fronts.sort(key=lambda front: front.record.seed or 0)
-    if not any(front.points for front in fronts):
-        raise trouble or SolverFailedError(f"{method}: {fronts[0].why_empty()}")
+    shown = fronts or stopped  # no statistics of seeds with one that was cut short
+    if not any(front.points for front in shown):
+        raise trouble or SolverFailedError(f"{method}: {shown[0].why_empty()}")
     finish(
-        _files(given.output, fronts, several),
-        *(function_lines(fronts) if given.function else search_lines(fronts)),
+        _files(given.output, [*fronts, *stopped], several),
+        *(function_lines(shown) if given.function else search_lines(shown)),
         *given.remarks,
         trouble=trouble,
     )
@@ -170,11 +179,43 @@ def search(given: Given) -> None:
 
 @dataclass
 class _Asked:
-    """What is searched, a task or a function of a file, by which method, with options of both."""
+    """What is searched, a task or a function of a file, by which method, with options of both.
+
+    `run` is the search that goes on in this process, if one does.
+    """
 
     what: PointToPoint | FunctionOfFile
     method: str
     options: dict[str, Any]
+    run: SearchRun | None = None
+
+    def begin(self, run: SearchRun) -> None:
+        """Take note of the search that begins."""
+        self.run = run
+
+    def until_the_stop(self) -> list[Front]:
+        """Return the front of the candidates of the search that was stopped, if it has one."""
+        if self.run is None or not self.run.function.archive.evaluations:
+            return []
+        front = self.run.front()
+        return [front] if front.points else []
+
+
+def _kept_words(
+    fronts: Sequence[Front], stopped: Sequence[Front], runs: int, *, is_written: bool
+) -> str:
+    """Say what is left of a search that was stopped: 3 of 5 seeds, the front of 80 candidates."""
+    several = runs > 1
+    kept = [counted(len(fronts), "front")] if fronts else []
+    kept += [
+        f"the front of the first {counted(front.record.evaluations, 'candidate')}"
+        f"{f' of seed {front.record.seed}' if several else ''}"
+        for front in stopped
+    ]
+    done = f"{len(fronts)} of {runs} seeds are done; " if several else ""
+    verb = "is" if len(fronts) + len(stopped) == 1 else "are"
+    written = "written" if is_written else "shown and not written"
+    return f"{done}{' and '.join(kept)} {verb} {written}"
 
 
 def _move(given: Given) -> _Asked:
@@ -223,7 +264,7 @@ def _search(asked: _Asked, seed: int) -> Front:
     from quietarm.metaheuristics import search
 
     what: Any = asked.what.load() if isinstance(asked.what, FunctionOfFile) else asked.what
-    return search(what, algorithm=asked.method, seed=seed, **asked.options)
+    return search(what, algorithm=asked.method, seed=seed, begun=asked.begin, **asked.options)
 
 
 def _save_at_once(output: Sequence[Path], front: Front) -> None:

@@ -8,8 +8,9 @@ from functools import partial
 import pytest
 from rich.console import Console
 
+from quietarm.metaheuristics import SearchProgress
 from quietarm.views.report import progress as shown
-from quietarm.views.report.progress import count, progress, working
+from quietarm.views.report.progress import count, progress, search_display, working
 
 
 def console(**settings):
@@ -41,3 +42,17 @@ def test_quiet_work_says_nothing(monkeypatch):
     with working("solving", pipe):
         time.sleep(0.05)
     assert pipe.file.getvalue() == ""
+
+
+def test_a_line_of_a_search_fits_into_a_hundred_columns():
+    pipe = console()
+    with search_display(pipe) as display:
+        display(
+            SearchProgress(
+                100_000, 100_000, 12.345, 0.0447, 0.653, 5_000_000, 3600.0, infeasible=1_000_000,
+                names=("settling time of the tip", "work of the drive"),
+            )
+        )  # fmt: skip
+    lines = pipe.file.getvalue().splitlines()
+    assert max(map(len, lines)) <= 100
+    assert "hypervolume 0.6530" in " ".join(lines)

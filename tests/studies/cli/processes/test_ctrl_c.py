@@ -8,7 +8,9 @@ import sys
 import pytest
 from lines import MOVE
 
-INTERRUPTED = "quietarm: interrupted; what was written until then is kept"
+from quietarm.ocp import Front
+
+INTERRUPTED = "quietarm: interrupted; only files that were written before are kept"
 SEARCH = f"search {MOVE} --method vepso --bound 0.2 --terms 2 --population 8 --generations 100000"
 FRONT = "front arm-on-flexible-link --target 90deg --duration 0.8 --terms 3 --points 10000"
 FILM = "export plan.json --output m.gif --width 2000 --rate 50 --speed 20%"
@@ -29,8 +31,6 @@ def begin(process, words):
 @pytest.mark.parametrize(
     ("line", "words", "number"),
     [
-        (f"{SEARCH} --output f.json", "generation ", signal.SIGINT),
-        (f"{SEARCH} --output f.json", "generation ", signal.SIGTERM),
         # the ends of the front are found
         (f"{FRONT} --output f.json --output f.png", r"([2-9]|\d\d+) of ", signal.SIGINT),
         (FILM, r"\d+ of 501 frames", signal.SIGINT),
@@ -45,6 +45,21 @@ def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line,
     assert (process.returncode, out) == (128 + number, "")  # as shells have it
     assert err.splitlines()[-1] == INTERRUPTED
     assert [path.name for path in folder.iterdir()] == ["plan.json"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_search_that_is_stopped_writes_the_front_until_then(at_a_terminal, stop, folder, number):
+    skip_where_ignored(number)
+    process = at_a_terminal(f"{SEARCH} --output f.json")
+    begin(process, "generation ")
+    out, err = stop(process, number)
+    assert process.returncode == 128 + number
+    assert "wrote f.json" in out
+    front = Front.load(folder / "f.json")
+    count = front.record.evaluations
+    assert 0 < count < 8 * 100_000
+    words = f"quietarm: interrupted: the front of the first {count} candidates is written"
+    assert err.splitlines()[-1] == words
 
 
 # Press while a module is being imported: a finder that finds nothing is asked for it first.

@@ -99,3 +99,21 @@ def test_a_reader_that_has_read_enough_is_no_error():
     ran = run("list plants", "| head -1")
     assert ran.stdout.startswith("plants")
     assert ran.stderr == ""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"search {ONE_MOVE} --bound 0.2 --population 8 --generations 2 --output kept.json",
+        f"front {ONE_MOVE} --points 3 --output kept.json",
+    ],
+)
+def test_work_goes_on_where_nobody_reads_its_progress(call, folder, monkeypatch, line):
+    reader, writer = os.pipe()
+    os.close(reader)  # as `2>&1 | head -1` leaves it
+    with open(writer, "w", buffering=1) as unread:
+        monkeypatch.setattr("sys.stderr", unread)
+        status, out, _ = call(line)
+    assert status == 0
+    assert "wrote kept.json" in out
+    assert (folder / "kept.json").exists()

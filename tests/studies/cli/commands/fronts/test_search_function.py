@@ -22,6 +22,14 @@ def three(x):
     return [1.0, 2.0, 3.0]
 three.lower, three.upper = [-1, -1], 1
 
+def stopped(x):
+    with open("calls.txt", "a") as calls:  # each seed runs this file anew
+        calls.write(".")
+        if calls.tell() % 30 == 0:
+            raise KeyboardInterrupt(15)
+    return parabolas(x)
+stopped.lower, stopped.upper = [-5, -5], 5
+
 number = 3
 """
 
@@ -73,6 +81,37 @@ def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder)
 )
 def test_what_is_wrong_is_said_in_one_line(refused, line, words):
     assert words in refused(f"search {line}")
+
+
+@pytest.mark.usefixtures("simulator")
+@pytest.mark.parametrize("method", ["es", "nsga2 --population 8"])
+def test_what_is_stopped_keeps_the_candidates_until_then(call, folder, method):
+    line = f"search --function simulator.py:stopped --evaluations 60 --method {method} --quiet"
+    code, out, err = call(f"{line} --output kept.json")
+    assert code == 128 + 15  # that of SIGTERM
+    assert "wrote kept.json" in out
+    count = qa.Front.load(folder / "kept.json").record.evaluations
+    assert 20 <= count < 30  # a generation is taken as a whole
+    assert err == f"quietarm: interrupted: the front of the first {count} candidates is written\n"
+    assert call("compare kept.json")[0] == 0
+    _, out, err = call(line)
+    assert f"the first {count} candidates is shown and not written" in err
+    assert f"{count} candidates in" in out
+
+
+@pytest.mark.usefixtures("simulator")
+def test_of_several_seeds_the_one_that_is_stopped_has_a_file_as_well(call, folder):
+    line = "search --function simulator.py:stopped --evaluations 16 --method es --runs 3 --quiet"
+    _, out, err = call(f"{line} --output front.json")
+    done, cut_short = (qa.Front.load(folder / f"front-seed{seed}.json") for seed in (0, 1))
+    count = cut_short.record.evaluations
+    assert done.record.evaluations == 16
+    assert 0 < count < 16
+    assert err.endswith(
+        f"1 of 3 seeds are done; 1 front and the front of the first {count} candidates of seed 1 "
+        "are written\n"
+    )
+    assert "seed 1" not in out  # its candidates are fewer, and stand in no statistics
 
 
 @pytest.mark.usefixtures("simulator")

@@ -65,9 +65,9 @@ def test_the_path_says_how_far_its_spline_swings_out(folder, call):
         code, out, _ = call(f"{line} --path way.csv")
         words = _words(out)
         assert code == 0
-        assert f"path the spline is {swing}" in words
-        assert "path not used of the table: times" in words
-        assert "path joints that the robot does not drive are left out: grip" in words
+        assert "path not used of the table: times; " in words
+        assert "joints that the robot does not drive are left out: grip; " in words
+        assert f"; the spline is {swing}" in words
 
 
 def test_a_line_whose_orientation_is_free_is_one_for_two_joints(folder, call, refused):
@@ -87,6 +87,10 @@ def test_waypoints_are_blended_and_taken_in_part(folder, call, refused):
     code, out, _ = call("list robot.yaml --path points.csv --waypoints 2:4 --blend 5mm")
     assert code == 0
     assert re.search(r"waypoint 2 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
+    first, *_ = lines = out.splitlines()
+    assert re.match(r"arm, 2 driven joints: along the path it swings at .* Hz, and sags by", first)
+    assert max(len(line.rstrip()) for line in lines) <= 100
+    assert out.count("\npath") == 1
     assert "waypoint 3" not in out
     for words, remedy in (
         ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, as 2:4"),
