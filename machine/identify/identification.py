@@ -173,7 +173,7 @@ def sought(
 def curve_of(
     machine: Identified, part: Part, recordings: Sequence[Recording]
 ) -> tuple[SwingModel, Array]:
-    """What was fitted in a part, and the signals that it was met by (rows, signals)."""
+    """Return the model fitted in a part, and its signals (rows, signals)."""
     named = [recording for recording in recordings if recording.name == part.recording]
     (recording, *_), _ = without_glitches(named)
     fitter = PartFitter(machine.plant, list(part.values), recording, 1.0)
@@ -271,7 +271,7 @@ def _inside(recording: Recording, begin: float, end: float) -> slice:
 
 
 def _is_read(name: str, parts: Sequence[Part]) -> bool:
-    """Whether a part is of the recording of a name."""
+    """Return whether one of the parts is of the recording of a name."""
     return any(part.recording == name for part in parts)
 
 

@@ -1,4 +1,4 @@
-"""Whether the columns of a recording are what they were said to be: a joint rests after a move."""
+"""Check that a recording's columns are what they were said to be: a joint rests after a move."""
 
 from __future__ import annotations
 

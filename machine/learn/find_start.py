@@ -189,7 +189,7 @@ def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
 
 
 def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
-    """How much of the plant's swing a tip shows during the move, by a motion with its frequency.
+    """Return the share of the plant's swing that a tip shows during a motion with its frequency.
 
     None where the tip was not seen during the move, or follows another course.
     """
@@ -209,7 +209,7 @@ _WORDS = {"angle": "joint", "torque": "torque", "tip": "tip", "acceleration": "a
 
 
 def courses_of(motion: JudgedMotion, signal: str) -> Sequence[Array]:
-    """What a signal consists of during the move, each with an unknown size: rows of `_POINTS`.
+    """Return a signal's parts during the move, each of unknown size: rows of `_POINTS`.
 
     `served` is the angle as a servo without feed-forward lets it follow.
     """
@@ -329,7 +329,7 @@ class StartSearch:
         return lag + step * float(place), stretch * (1 + _PER_CENT * float(clock)), float(found.fun)
 
     def _holds_all(self, begin: float, stretch: float) -> bool:
-        """Whether the move, by a clock, is all the way that the recording goes, and no piece."""
+        """Return whether the move, by a clock, is all the recorded way, and no piece of it."""
         if not 0.2 <= stretch <= 5:
             return False
         nearly = 0.9  # share of the way; a swing after the move goes beyond it
@@ -402,7 +402,7 @@ def _check_way(plan: Plan, recording: Recording, lag: float, share: float) -> No
 
 
 def _way(recording: Recording, begin: float, duration: float) -> float:
-    """How far a joint goes in a recording, from before a move to after it."""
+    """Return how far a joint goes in a recording, from before a move to after it."""
     assert recording.angle is not None
     time, angle = recording.time, recording.angle
     margin = _BEFORE * duration

@@ -101,7 +101,7 @@ class Wraps(NamedTuple):
         return time + np.cumsum(whole)
 
     def in_words(self, numbers: Sequence[int] | Rows) -> str:
-        """What was unwrapped, and where."""
+        """Say what was unwrapped, and where."""
         more = f" and {len(self.after) - 1} more" if len(self.after) > 1 else ""
         counter = f"a counter of {self.bits} bits, wraps" if self.bits else "a time of day, wraps"
         return (
@@ -152,7 +152,7 @@ def _periods(time: Array, tick: float) -> Iterator[tuple[int, float, float]]:
 
 
 def _are_whole(time: Array, tick: float) -> bool:
-    """Whether times are multiples of a tick."""
+    """Return whether times are multiples of a tick."""
     ticks = time / tick
     unsure = 1e-3 + 4e-16 * np.abs(ticks).max()
     if unsure > 0.2 or np.ptp(ticks) < 1:

@@ -1,4 +1,4 @@
-"""What was recorded of a robot's move: torques, positions, and the tip's acceleration.
+"""Recordings of a robot's move: torques, positions, and the tip's acceleration.
 
 A controller's log has gaps, a first row that is not of the move, and a coarse clock. Times are
 mended as those of a `Recording`.

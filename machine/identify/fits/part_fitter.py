@@ -63,7 +63,7 @@ class PartFitter:
 
     @property
     def frequencies(self) -> Array:
-        """Of the plant's modes as they are given, with the joint at rest [Hz]."""
+        """Frequencies of the plant's modes as they are given, with the joint at rest [Hz]."""
         return np.asarray(self._modes, float) / tau
 
     def of(self, names: Sequence[str]) -> PartFitter:

@@ -125,11 +125,11 @@ def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
 
 
 def moves(recording: Recording) -> bool:
-    """Whether the joint moves more than its encoder flickers."""
+    """Return whether the joint moves more than its encoder flickers."""
     angle = recording.angle
     return angle is not None and float(np.ptp(angle)) > _flicker(angle)
 
 
 def _flicker(angle: Array) -> float:
-    """What an encoder may show of a joint that stands: eight deviations of its noise."""
+    """Largest range that an encoder may show of a joint at rest: eight deviations of its noise."""
     return 8.0 * float(noise_of(angle)[0])
