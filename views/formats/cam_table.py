@@ -51,7 +51,7 @@ class Cam(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """How a tool reads a cam, and how it interpolates between the points."""
+    """Layout of a cam for a tool, which also says how the tool interpolates between the points."""
 
     write: Callable[[Cam], str]
     interpolation: int

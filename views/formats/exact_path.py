@@ -35,7 +35,7 @@ def positions_at(plant: Plant, place: float) -> list[float]:
 
 
 def title_of(plan: Plan) -> str:
-    """What moves and where, for the first line of a source."""
+    """Say what moves and where, for the first line of a source."""
     return f"{moved(plan.task)}, {move_of(plan.task)}"
 
 

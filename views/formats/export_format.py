@@ -105,7 +105,7 @@ class ExportSetting:
 
     @property
     def option(self) -> str:
-        """Its option on the command line."""
+        """Name of the setting's option on the command line."""
         return f"--{self.name.replace('_', '-')}"
 
     def check(self, value: Any) -> Any:

@@ -118,7 +118,7 @@ def _fewest(moved: Array, directions: Array, tolerance: float) -> Array:
 
 
 def _is_close(moved: Array, shapes: Array, tolerance: float) -> bool:
-    """Whether rows are within a distance of sums of shapes."""
+    """Return whether rows are within a distance of sums of shapes."""
     return bool(np.abs(moved - moved @ shapes.T @ shapes).max() <= tolerance)
 
 

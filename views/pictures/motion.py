@@ -87,12 +87,12 @@ Motions = Sequence[Line] | Plan | Floor
 
 @interruptible
 def drawn_quantities() -> tuple[str, ...]:
-    """What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
+    """Name what can be drawn: the joint's angle, quantities that a task may limit, the power."""
     return ("angle", *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel), "power")
 
 
 def _is_always_drawn(name: str) -> bool:
-    """Whether it is a panel of every motion; others are where a task limits them."""
+    """Return whether a quantity is a panel of every motion; others are where a task limits them."""
     return QUANTITIES[name].always_drawn if name in QUANTITIES else name == "angle"
 
 
@@ -137,7 +137,7 @@ def draw_quantity(
 
 
 def _drawn() -> list[str]:
-    """What can be drawn, with the user's own panels."""
+    """Name what can be drawn, with the user's own panels."""
     return [*drawn_quantities(), *known_panels(drawn_quantities())]
 
 
@@ -377,7 +377,7 @@ def _figure_of_joints(
 
 
 def _is_of_joints(quantity: str) -> bool:
-    """Whether a quantity has a curve for each joint."""
+    """Return whether a quantity has a curve for each joint."""
     return quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
 
 

@@ -47,12 +47,12 @@ class Structure:
 
     @cached_property
     def bent(self) -> list[DrawnPart]:
-        """What is drawn: discs, links and tips."""
+        """Parts that are drawn: discs, links and tips."""
         return self._parts(self._bent_bodies)
 
     @cached_property
     def unbent(self) -> list[DrawnPart]:
-        """The same without deflection."""
+        """Parts that are drawn, without deflection."""
         return self._parts(self._bodies(0 * self.tips))
 
     @property
@@ -75,7 +75,7 @@ class Structure:
 
     @property
     def scale_words(self) -> str:
-        """How much larger deflections are drawn."""
+        """Words on how much larger deflections are drawn."""
         return "to scale" if self.scale == 1 else f"deflection x {self.scale:g}"
 
     @property

@@ -191,7 +191,7 @@ def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
 
 
 def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
-    """What to know of a robot's path: what its file had more, and how far its spline swings out."""
+    """Describe a robot's path: what else its file had, and how far its spline swings out."""
     rows = [("path", words) for words in path.remarks]
     units = [WAY.of(robot.kind_of(name)) for name in robot.joints]
     off = sorted(zip(path.off_straight.tolist(), units, robot.joints), reverse=True)
@@ -210,7 +210,7 @@ def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
 
 
 def _left_out_rows(robot: Robot, path: GeometricPath, numbers: Sequence[int]) -> list[Row]:
-    """What the modes that are not followed leave after a plain cycloid, the largest first."""
+    """Say what modes that are not followed leave after a plain cycloid, the largest first."""
     swings = [swing for swing in swings_of(robot, path) if swing.number not in numbers]
     swings = sorted(swings, key=lambda swing: -swing.leaves)[:_MORE]
     if not swings:
