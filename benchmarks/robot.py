@@ -341,7 +341,7 @@ def figure_12() -> str:
 
 
 def _with_loads(task: qa.PointToPoint, truth: Callable[[float], Truth]) -> str:
-    """What is left with other loads by a robust plan, a plan for one load, and the cycloid."""
+    """Say what a robust plan, a plan for one load, and the cycloid leave with other loads."""
     plans = {
         "plan with errors": qa.plan_move(task, qa.CycloidPolynomial(8)),
         "plan without": qa.plan_move(task.certain),

@@ -230,7 +230,7 @@ def _mm(length: float) -> str:
 
 
 def _own_duration(table: JointTable) -> float | None:
-    """How long a message takes [s]; None of one whose times do not increase."""
+    """Return the duration of a message [s]; None for one whose times do not increase."""
     times = table.times
     if times is None or not bool(np.all(np.diff(times) > 0)):
         return None

@@ -382,7 +382,7 @@ class Front(Answer):
 
     @property
     def has_knee(self) -> bool:
-        """Whether the knee is between the ends, and not chance on a nearly straight front."""
+        """Return whether the knee is between the ends, not chance on a nearly straight front."""
         return has_knee(self.objective_values, self.reference)
 
     def _nonempty(self) -> Sequence[FrontPoint]:

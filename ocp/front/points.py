@@ -314,7 +314,7 @@ def knee_of(points: NDArray[np.float64], corner: ArrayLike) -> int:
 
 
 def has_knee(points: NDArray[np.float64], corner: ArrayLike) -> bool:
-    """Whether the knee is between the ends of a front, and not chance.
+    """Return whether the knee is between the ends of a front, and not chance.
 
     It is no end: its residual is a twentieth of the corner's at least, and each other objective as
     much above the least of the front. On a front that is nearly straight, which point has the least

@@ -104,7 +104,7 @@ def _plan_on_first_that_will_do(request: Request) -> Plan:
 
 
 def _is_held(request: Request) -> bool:
-    """Whether a plan for an uncertain plant has to keep a band or a stated residual limit.
+    """Return whether an uncertain plant's plan has to keep a band or a stated residual limit.
 
     Within a box of the coefficients a longer duration need not help: that is looked into.
     """
@@ -127,7 +127,7 @@ def _try_fit(request: Request, fit: SplineFit) -> Plan | None:
 
 
 def _beyond(request: Request) -> str:
-    """What is said of limits that no motion comes near to."""
+    """Say that no motion comes near to the limits."""
     task = request.task
     limits = Program.of(task, SIX).within(request.residual_limit).limits
     stated = ", ".join(stated_limit(task, limit) for limit in limits)
@@ -145,7 +145,7 @@ def _plan_without_limits(request: Request) -> Plan | None:
 
 
 def _plan_of_held(request: Request) -> Plan | None:
-    """The same within a residual limit that is held: what can be had is soon found."""
+    """Return the plan within a residual limit that is held: what can be had is soon found."""
     brief = replace(request, solver=_briefly(request.solver), quick=True)
     more = more_terms(request.task)
     plan = _try(brief)

@@ -119,7 +119,7 @@ class SplineFit(NamedTuple):
 
     @property
     def keeps(self) -> bool:
-        """Whether its motion keeps every limit."""
+        """Return whether the motion keeps every limit."""
         return self.excess.holds and self.excess.share <= 0
 
 

@@ -82,7 +82,7 @@ def build_plant(kind: Kind, values: Mapping[str, Any]) -> Plant:
 
 
 def recorded_of(kind: Kind, changed: Collection[str]) -> Recorded | None:
-    """How the frequencies of an identified machine were recorded, unless other ones are set."""
+    """Return how an identified machine's frequencies were recorded, unless other ones are set."""
     if not isinstance(kind, Identified) or any(is_modal(kind.plant, name) for name in changed):
         return None
     return kind.recorded

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LearnedSet:
-    """What recordings of some moves tell of a whole dataset.
+    """A whole dataset corrected by recordings of some of its moves, and what these told.
 
     Attributes
     ----------

@@ -131,7 +131,7 @@ def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapp
 
 
 def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None:
-    """What the row with limits says: ranges over the kinds of limit; None before any run.
+    """Return what the row with limits says: ranges over the kinds of limit; None before any run.
 
     The search is the one whose largest gap over the kinds is least.
     """

@@ -170,7 +170,7 @@ def search(given: Given) -> None:
 
 @dataclass
 class _Asked:
-    """What is searched, a task or a function of a file, by which method, with options of both."""
+    """A search that is asked for: of a task or a file's function, its method, options of both."""
 
     what: PointToPoint | FunctionOfFile
     method: str

@@ -233,7 +233,7 @@ def test_a_leader_after_its_follower_in_the_file_leads_as_well():
 
 @pytest.mark.slow
 def test_along_a_path_a_follower_swings_the_tip_as_a_driven_joint_would():
-    """The same motion with the elbow driven: the same residual, and torques by virtual work."""
+    """A driven elbow leaves the same residual, and needs the same torques by virtual work."""
     beam = qa.Beam(
         at="lower", length=0.5, bending_stiffness=30.0, mass_per_length=0.2, tip_mass=0.3, pieces=2
     )
