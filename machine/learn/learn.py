@@ -118,7 +118,7 @@ def learn(
 def _evidence(
     plan: Plan, recordings: Sequence[Recording | RobotRecording]
 ) -> tuple[Evidence, list[ReadMove], list[str]]:
-    """What the moves of a plan of one joint tell, how they were read, and what was mended."""
+    """Return what moves of a plan of one joint tell, how they were read, and what was mended."""
     recordings, notes = without_glitches(checked_recordings(recordings))
     read = [read_move(plan, recording) for recording in recordings]
     evidence = evidence_of(plan, read)
