@@ -257,7 +257,7 @@ def _splined(times: Array, rows: Array, in_space: bool) -> Distance:
 
 
 def _distances(rows: Array, in_space: bool) -> Array:
-    """How far the tips are from their targets: the farthest of several, one by all its axes."""
+    """Return the tips' distances from their targets: the farthest of several, one in space."""
     return np.linalg.norm(rows, axis=0) if in_space else np.abs(rows).max(axis=0)
 
 
@@ -365,7 +365,7 @@ def worst_time_to_act(motion: JudgedMotion, band: float, ranges: Mapping[str, fl
 def _after_arrival(
     motion: JudgedMotion, band: float, ranges: Mapping[str, float], errors: Array
 ) -> Array:
-    """How long after arrival the tip is last beyond the band, for each row of errors."""
+    """Return how long after arrival the tip is last beyond the band, for each row of errors."""
     faster = 1 + max(ranges.values())  # any of them may be a frequency
     steps = max(ROLLOUT_STEPS, math.ceil(faster * default_steps(motion.task, least=1)))
     evaluator = motion.by_steps(steps, quantities=[], error_names=tuple(ranges))

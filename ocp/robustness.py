@@ -83,7 +83,7 @@ def worst_of(candidate: JudgedMotion) -> JudgedMotion | None:
 
 
 def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> JudgedMotion:
-    """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
+    """Return the worst case within ranges of errors for a motion without a profile, by CVODES."""
 
     def residuals(errors: Array) -> Array:
         named_errors = [dict(zip(ranges, row)) for row in errors.tolist()]
@@ -257,7 +257,7 @@ class Sweep:
 
     @property
     def open_ends(self) -> tuple[bool, bool]:
-        """Whether the range reaches the lower, the upper end of the sweep."""
+        """Return whether the range reaches the lower, the upper end of the sweep."""
         low, high = self.insensitivity or (0.0, 0.0)
         return bool(low <= self.errors[0]), bool(high >= self.errors[-1])
 

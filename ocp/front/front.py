@@ -213,7 +213,7 @@ class Front(Answer):
         return {figure.column_on(plant): figures.get(figure.name, np.nan) for figure in further}
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the table that a notebook shows."""
         plant = self.task.plant
         unit = plant.tip_unit
         added = further_figures(FRONT, self.task)
@@ -329,7 +329,7 @@ class Front(Answer):
         )
 
     def restated(self, **changes: Any) -> Front:
-        """The same front with other entries of its record."""
+        """Return this front with other entries of its record."""
         return replace(self, record=replace(self.record, **changes))
 
     def smallest_residual(self) -> FrontPoint:

@@ -138,7 +138,7 @@ class FunctionFront(Front):
         return list(self.outputs[2:])
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the table that a notebook shows."""
         head = [f"{objective.label} [{objective.unit or '-'}]" for objective in self.outputs]
         rows = [
             (*(f"{value:.5g}" for value in values), ", ".join(f"{a:.4g}" for a in coefficients))

@@ -173,7 +173,7 @@ class Entries:
         return np.column_stack([column[:count] for column in columns])
 
     def beliefs(self, evaluations: int | None = None) -> NDArray[np.float64]:
-        """The same as the search took them: with its noise, where it had any."""
+        """Return the objectives as the search took them: with its noise, if it had any."""
         if not self.believed:
             return self.objectives(evaluations)
         return np.array(self.believed[: self._count(evaluations)])
@@ -212,7 +212,7 @@ def non_dominated_rows(table: NDArray[np.float64]) -> list[int]:
 
 
 class Evaluated(NamedTuple):
-    """What became of motions: the points of their front, how many are not in it, and why."""
+    """Evaluated motions: the points of their front, how many are not in it, and why."""
 
     points: tuple[FrontPoint, ...]
     failed: int

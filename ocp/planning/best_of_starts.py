@@ -82,7 +82,7 @@ def briefly(
 
 
 def is_beyond(problem: Program, start: Array, share: float = 0.05) -> bool:
-    """Whether linear programs say that the limits have to be wider by more than a share."""
+    """Return whether linear programs say that the limits have to be wider by more than a share."""
     if not any(limit.name != RESIDUAL for limit in problem.limits):
         return False
     if problem.peak is not None:
@@ -127,7 +127,7 @@ def _lowest(solutions: Sequence[Solution], problem: Program) -> Solution:
 
 
 def better(solution: Solution, known: Solution, problem: Program) -> bool:
-    """Whether a solution is lower than a known one by more than the solver's tolerance."""
+    """Return whether a solution is lower than a known one by more than the solver's tolerance."""
     minimum = minimum_of(solution, problem)
     known_minimum = minimum_of(known, problem)
     if known_minimum == np.inf:
@@ -136,7 +136,7 @@ def better(solution: Solution, known: Solution, problem: Program) -> bool:
 
 
 def minimum_of(solution: Solution, problem: Program) -> float:
-    """What was minimised; infinite where nothing was solved."""
+    """Return the minimised value; infinite where nothing was solved."""
     values = {**solution.peaks, ENERGY: solution.energy}
     minimum = sum(weight * values[name] for name, weight in problem.minimise.items())
     return minimum if solution.status.solved else np.inf

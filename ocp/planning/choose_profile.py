@@ -207,7 +207,7 @@ def _plan_within_limits(request: Request) -> Plan | None:
 
 
 def _solve_with_six(request: Request) -> Solution:
-    """What six terms give for the nominal plant, by the solver's own steps."""
+    """Solve for the nominal plant with six terms, by the solver's own steps."""
     size = 0.0 if request.adapts else request.residual_limit
     nominal = request.on(request.task.certain).within(size)
     with_six = replace(nominal, profile=SIX)
@@ -231,7 +231,7 @@ def _try(request: Request) -> Plan | None:
 
 
 def _worst_residual(plan: Plan) -> float:
-    """What a plan leaves in the worst case [m]."""
+    """Return what a plan leaves in the worst case [m]."""
     return plan.residual if plan.worst is None else plan.worst.residual
 
 

@@ -142,7 +142,7 @@ def fit_spline(task: PointToPoint, residual_limit: float, bound: float | None) -
 
 
 def shaped_duration(task: PointToPoint) -> float:
-    """How long the rigid joint's fastest motion takes behind a ZV shaper for every mode [s].
+    """Return the time of the rigid joint's fastest motion behind a ZV shaper for every mode [s].
 
     ValueError where nothing limits the joint.
     """
@@ -279,7 +279,7 @@ class _Durations:
         return JudgedMotion.of_profile(task, self._profile, least.coefficients)
 
     def widen_margins(self, least: LeastTime) -> bool:
-        """Whether a motion passes limits by more than their margins, which are wider then."""
+        """Widen the margins that a motion passes limits by; return whether there are any."""
         exceeded = self._motion(least).figures.exceeded(self._task.limits)
         for name, ratio in exceeded.items():
             self._margins[name] += self.room * (ratio - 1)
