@@ -34,7 +34,7 @@ _WINDOW = "residual_window_s"
 
 @dataclass(frozen=True)
 class Found:
-    """What a file holds: coefficients, what it claims of each motion, columns of no use.
+    """Content of a file: coefficients, what it claims of each motion, columns of no use.
 
     And the residual window [s] of what it claims, where it says so.
     """

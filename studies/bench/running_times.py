@@ -20,7 +20,7 @@ reached."""
 
 
 class History(NamedTuple):
-    """What a run lacked and had cost at each of its marks.
+    """The history of a run: what it lacked and had cost at each of its marks.
 
     Attributes
     ----------

@@ -41,7 +41,7 @@ def attainable_by_holm(least: Array) -> Array:
 
 
 def say_power(runs: int, methods: int) -> str:
-    """What so many runs of so many methods can show, said before they are done."""
+    """Say what so many runs of so many methods can show, before they are done."""
     pairs = comb(methods, 2)
     if pairs == 0:
         return "one method alone is compared with none"
@@ -73,7 +73,7 @@ def _runs_needed(pairs: int, least: Callable[[int], float]) -> int:
 
 
 def say_power_of(runs: Iterable[tuple[str, str]]) -> str:
-    """What runs, each a problem and a method, can show: the fewest of one, and most methods."""
+    """Say what runs, each a problem and a method, can show: the fewest of one, most methods."""
     counts = defaultdict[str, Counter[str]](Counter)
     for problem, method in runs:
         counts[problem][method] += 1
@@ -282,7 +282,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
 
 
 def _same(known: Mapping[str, Mapping[str, Array]], first: str, second: str) -> bool:
-    """Whether two methods have the same values on all problems."""
+    """Return whether two methods have the same values on all problems."""
     return all(
         np.array_equal(values[first], values[second], equal_nan=True) for values in known.values()
     )

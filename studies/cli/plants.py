@@ -47,7 +47,7 @@ def parse_plant(name: str) -> Kind:
 
 
 def choose_kind(named: Kind | None, of_file: Mapping[str, type[Plant]] | None) -> Kind:
-    """What PLANT names, or else the only plant of a plant file."""
+    """Return what PLANT names, or else the only plant of a plant file."""
     if named is not None:
         return named
     if not of_file:

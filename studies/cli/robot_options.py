@@ -85,7 +85,7 @@ def _blended(given: Given, robot: Robot) -> GeometricPath:
 
 
 def _tolerance(given: Given, robot: Robot) -> float | None:
-    """How far a path may be from the lines between its points [rad or m], if that was typed."""
+    """Read how far a path may be from the lines between its points [rad or m], if it was typed."""
     text: str | None = given.path_tolerance
     if text is None:
         return None
@@ -120,7 +120,7 @@ def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
 
 
 def line_note(given: Given, plant: RobotOnPath) -> str | None:
-    """How straight the link goes for which a line was typed."""
+    """Say how straight the link goes for which a line was typed."""
     if given.line_to is None and given.line_by is None:
         return None
     kinematics = plant.robot.kinematics(given.link)

@@ -63,7 +63,7 @@ class RunsOfMethod:
 
     @property
     def by_gradient(self) -> bool:
-        """Whether the gradient found them, so that the points lie on a line."""
+        """Return whether the gradient found the runs, so that the points lie on a line."""
         return is_gradient(self.runs[0].front.record.method)
 
     @property
@@ -326,7 +326,7 @@ def _refuse_other_function(front: Front, first: Front, name: str, first_name: st
 
 
 def differ_in_window_alone(task: PointToPoint, other_task: PointToPoint) -> bool:
-    """Whether two tasks have another residual window, and are one task but for that."""
+    """Return whether two tasks differ in the residual window, and in nothing else."""
     alike = replace(task, residual_window=other_task.residual_window)
     return bool(task_difference(task, other_task)) and not task_difference(alike, other_task)
 

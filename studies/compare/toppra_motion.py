@@ -123,7 +123,7 @@ def _along(task: PointToPoint, shares: Any) -> tuple[Array, Array, Array]:
 
 
 def _constraints(task: PointToPoint, limits: Sequence[Limit]) -> list[Any]:
-    """What toppra takes in the place of limits."""
+    """Return what toppra takes in the place of limits."""
     from toppra.constraint import (
         DiscretizationType,
         JointAccelerationConstraint,

@@ -1,4 +1,4 @@
-"""What the paper's searches find for a move, seed by seed, judged at the paper's residual."""
+"""Results of the paper's searches for a move, seed by seed, judged at the paper's residual."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Searched:
 
     @property
     def seconds(self) -> list[float]:
-        """What each seed took."""
+        """Seconds that each seed took."""
         return [front.record.seconds for front in self.fronts]
 
     @cached_property

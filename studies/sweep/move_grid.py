@@ -107,12 +107,12 @@ class MoveGrid:
 
     @property
     def cells(self) -> int:
-        """How many moves there are."""
+        """Number of moves."""
         return math.prod(self.shape)
 
     @property
     def hours(self) -> float:
-        """How long a core takes to plan them, roughly."""
+        """Hours that a core takes to plan the moves, roughly."""
         # of six terms, without ranges of errors
         seconds_of_cell = 0.005
         return seconds_of_cell * self.cells / 3600
