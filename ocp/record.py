@@ -1,4 +1,4 @@
-"""Where an answer comes from: what was asked, by what it was found, and how it was checked."""
+"""The record of an answer: what was asked, by what it was found, and how it was checked."""
 
 from __future__ import annotations
 

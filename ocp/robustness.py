@@ -165,7 +165,7 @@ def _grid(along: ArrayLike, ranges: int) -> Array:
 
 
 def _is_peak(values: Array) -> NDArray[np.bool_]:
-    """Where a value of a grid is no smaller than its neighbours along every side."""
+    """Return where a value of a grid is no smaller than its neighbours along every side."""
     peak = np.ones(values.shape, dtype=bool)
     for axis in range(values.ndim):
         peak &= np.diff(values, axis=axis, prepend=-np.inf) >= 0
@@ -193,7 +193,7 @@ class Sensitivity:
 
 
 def sensitivities(candidate: JudgedMotion) -> tuple[Sensitivity, ...]:
-    """By central differences of CVODES; the parameter that adds most vibration comes first."""
+    """Return sensitivities by central differences of CVODES, that with most vibration first."""
     task = candidate.task
     vibration = after_arrival(task)[0]
 
@@ -376,7 +376,7 @@ def _sweep(name: str, errors: Array, figures: Figures, tolerated: float) -> Swee
 
 
 def _crossing(errors: Array, excess: Array) -> float:
-    """Where the excess is first above 0, between two errors; the last error if it never is."""
+    """Return where the excess is first above 0, between two errors; the last error if nowhere."""
     above = np.flatnonzero(excess > 0)
     if not above.size:
         return float(errors[-1])

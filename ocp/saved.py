@@ -244,7 +244,7 @@ def _check_file(name: str, path: str, sha256: str) -> None:
 
 
 def _shown(digest: str) -> str:
-    """As much of a digest as a message shows."""
+    """Return as much of a digest as a message shows."""
     return digest[:12]
 
 

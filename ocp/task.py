@@ -443,7 +443,7 @@ class PointToPoint:
 
     @property
     def ends(self) -> str:
-        """From where to where in words: "0 to 30 deg", of joints on a path places on it."""
+        """Start and target in words: "0 to 30 deg", of joints on a path places on it."""
         if self.plant.has_path:
             whole = (self.start, self.target) == (0.0, 1.0)
             return (

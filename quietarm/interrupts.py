@@ -239,7 +239,7 @@ def as_command(
 
 
 def exit_status_of(stop: BaseException) -> int:
-    """By the shell's convention: 128 and the number of the signal, which of Ctrl-C is 2."""
+    """Return the shell's exit status: 128 and the number of the signal, which of Ctrl-C is 2."""
     number = next(iter(stop.args), signal.SIGINT)
     return 128 + (number if isinstance(number, int) else signal.SIGINT)
 

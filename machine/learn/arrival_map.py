@@ -90,7 +90,7 @@ def faster_by(
     size: float,
     share: float | None = None,
 ) -> float:
-    """By what share a mode is faster during moves than after them, as their arrivals tell.
+    """Return by what share a mode is faster during moves than after, as their arrivals tell.
 
     Arguments are those of `map_of`, and `slope`, what the plant says more by a share of 1.
     """

@@ -33,7 +33,7 @@ def refuse_constant(name: str, columns: Mapping[str, Array | None]) -> None:
 
 
 def check_columns(plan: Plan, recording: Recording, arrival: float) -> None:
-    """ValueError where what was given as the joint swings after arrival, as a tip does."""
+    """Refuse what was given as the joint if it swings after arrival, as a tip does."""
     if recording.angle is None:
         return
     task = plan.task

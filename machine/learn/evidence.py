@@ -35,7 +35,7 @@ _LEAST_CHANGE_OF_DAMPING = 0.2
 
 @dataclass(frozen=True)
 class ReadMove:
-    """When a move began in a recording [s], when it ended, and what swung after it.
+    """A move in a recording: when it began [s], when it ended, and what swung after it.
 
     Without a tip that follows from the joint's motion.
     """
@@ -196,7 +196,7 @@ class Evidence:
         return {name: (getattr(plant, name), value) for name, value in moving.items()}
 
     def _faster_by(self, plant: Plant, rates: Sequence[str]) -> float:
-        """By what share the slowest mode is faster during the moves than after them."""
+        """Share by which the slowest mode is faster during the moves than after them."""
         step = 1e-3
         faster = replace(plant, **{name: (1 + step) * getattr(plant, name) for name in rates})
         told = self._told_by(plant)
@@ -470,7 +470,7 @@ class Evidence:
 
     @property
     def _changes(self) -> list[str]:
-        """That a frequency was another in another move of the history, clearly, in words."""
+        """Words on a frequency that clearly was another in another move of the history."""
         least = 0.01  # share of a frequency; less is what amplitude and friction make of it
         clear = 5.0  # deviations
         words = list[str]()
@@ -492,7 +492,7 @@ class Evidence:
 
     @property
     def _differences(self) -> list[str]:
-        """That the recordings of the last move differ, in words."""
+        """Words on recordings of the last move that differ."""
         most = 0.5  # share of what is left, by which moves may differ
         beyond = 3.0  # deviations of the noise, by which they differ at any rate
         noise = beyond * float(np.sqrt(2) * self._of_one[-1].sum())

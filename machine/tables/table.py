@@ -174,7 +174,7 @@ class Table:
 
 
 def unused_in_words(unused: Sequence[str]) -> str:
-    """That columns are not used, in a sentence; empty where all are."""
+    """Say that columns are not used; empty where all are."""
     most = 8
     if not unused:
         return ""

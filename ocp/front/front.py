@@ -391,7 +391,7 @@ class Front(Answer):
         return self.points
 
     def why_empty(self) -> str:
-        """Why there is no point, from what became of the candidates, and what to try."""
+        """Say why there is no point, from what became of the candidates, and what to try."""
         none = "the front has no point;"
         if 0 < self.record.evaluations == self.failed:
             return f"{none} the motions of all {self.failed} candidates overflow; narrow the bound"

@@ -147,7 +147,7 @@ class FunctionFront(Front):
         return to_html(rows, [*head, "coefficients"])
 
     def why_empty(self) -> str:
-        """Why there is no point, from what became of the candidates, and what to try."""
+        """Say why there is no point, from what became of the candidates, and what to try."""
         count = self.record.evaluations
         if 0 < count == self.failed:
             return (

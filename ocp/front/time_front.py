@@ -89,7 +89,7 @@ class TimeFront(Answer):
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """When each point acts [s]."""
+        """Times when each point acts [s]."""
         return np.array([point.acts_after for point in self.points])
 
     @property

@@ -1,4 +1,4 @@
-"""Where a solver starts, and the best of what it finds; what is tried where it finds nothing."""
+"""Starts of a solver, the best of what it finds, and what is tried where it finds nothing."""
 
 from __future__ import annotations
 

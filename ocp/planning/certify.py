@@ -210,7 +210,7 @@ def _settle(
     judge_all: Callable[[Sequence[_Row]], None],
     rounds: int = 12,
 ) -> list[Certified | SolverFailedError]:
-    """At most `rounds` times: correct or refine what differs, until nothing does.
+    """Correct or refine what differs, until nothing does, at most `rounds` times.
 
     It ends as well where no row was solved again.
     """

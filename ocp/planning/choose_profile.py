@@ -1,4 +1,4 @@
-"""Which profile a task takes where nobody names one: the one rule for plans, fronts and searches.
+"""The rule by which a task takes a profile if nobody names one: for plans, fronts and searches.
 
 Without limits six terms are the paper's, and more only make the starts harder. Within the limits of
 a drive they cost up to twice the least energy, or find no motion. Two terms more often save

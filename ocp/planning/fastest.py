@@ -272,7 +272,7 @@ class _Tried:
         return succeeds
 
     def bracket(self, least: float) -> tuple[float, float]:
-        """Two durations, of which the longer one succeeds and the shorter one does not."""
+        """Return two durations, of which the longer one succeeds and the shorter one does not."""
         if least > 0:
             self.failed[least] = _RIGID
         low = max(least, LEAST_DURATION)

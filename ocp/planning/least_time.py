@@ -258,7 +258,7 @@ class _Durations:
         return excess
 
     def _problem(self, program: Program) -> Program:
-        """Within narrower limits of what is limited on the way."""
+        """Return the problem within narrower limits of what is limited on the way."""
         problem = program.within(self._residual_limit, self._bound)
         limits = [
             limit.tightened(1 + self._margins.get(limit.name, 0.0)) for limit in problem.limits
@@ -347,7 +347,7 @@ class _Weights:
         self._went_up: bool | None = None
 
     def between(self, below: _Probe, above: _Probe, tolerance: float) -> float:
-        """Where the line through both ends is zero, not too near to either of them."""
+        """Return where the line through both ends is zero, not too near to either of them."""
         excess = self._of_below * below.share
         room = -self._of_above * above.share
         middle = below.duration + (above.duration - below.duration) * excess / (excess + room)

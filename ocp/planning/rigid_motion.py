@@ -130,7 +130,7 @@ def _largest_speed(remaining: Callable[[float], float], most: float, halvings: i
 
 
 class _Ramp(NamedTuple):
-    """From rest to a speed: the time at which each of its pieces ends [s], and how far it gets."""
+    """Ramp from rest to a speed: the time at which each of its pieces ends [s], and its way."""
 
     switches: tuple[float, ...]
     distance: float
@@ -150,7 +150,7 @@ class _Ramp(NamedTuple):
 
     @classmethod
     def to(cls, speed: float, acceleration: float, rising: float, falling: float) -> _Ramp:
-        """As fast as acceleration and jerk allow; with neither at once."""
+        """Make the ramp that is as fast as acceleration and jerk allow; with neither at once."""
         if math.isinf(speed):
             return cls((math.inf,), math.inf)
         slowness = 1 / rising + 1 / falling
@@ -236,7 +236,7 @@ def _sides(limit: Limit | None, joint: int) -> tuple[float, float]:
 
 
 def _ways(task: PointToPoint) -> list[float]:
-    """From the first angle of every joint to its last."""
+    """Return the way of every joint, from its first angle to its last."""
     begin, end = (
         task.plant.joints(JointMotion(place, 0.0, 0.0)) for place in (task.start, task.target)
     )

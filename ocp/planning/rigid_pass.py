@@ -62,7 +62,7 @@ class LimitedRows(NamedTuple):
         return turned._replace(slope=-turned.slope)
 
     def and_(self, more: LimitedRows) -> LimitedRows:
-        """These rows and others."""
+        """Return these rows and others."""
         return LimitedRows(*map(np.concatenate, zip(self, more)))
 
 

@@ -101,7 +101,7 @@ def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:
 
 
 def _coefficients(columns: Sequence[Column]) -> list[int]:
-    """Which columns are coefficients, in their order: by their names, or those of one matrix."""
+    """Return which columns are coefficients, in order: by their names, or those of one matrix."""
     numbered = dict[int, int]()
     matrices = dict[str, list[int]]()
     names = [column.name.lower() for column in columns]

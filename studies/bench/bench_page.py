@@ -228,7 +228,7 @@ def _windows(results: Results) -> str:
 
 
 def _repeated(results: Results) -> dict[str, list[str]]:
-    """By problem, what methods found the same from every seed."""
+    """Return by problem the methods that found the same from every seed."""
     return {
         problem.name: [
             bench_label(m) for m in results.methods if results.is_repeated(problem.name, m)

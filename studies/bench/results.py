@@ -211,7 +211,7 @@ class Results:
         return [run.history_of(indicator) for run in runs]
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
-        """Where the missing share changes, in processor seconds or evaluations, for every run.
+        """Return where the missing share changes, in processor seconds or evaluations, by run.
 
         Returns
         -------
@@ -237,7 +237,7 @@ class Results:
     def hits(
         self, problem: str, method: str, targets: Sequence[float], by: str = "seconds"
     ) -> Array:
-        """Where each run first missed no more than each target, as `running_times.hits`."""
+        """Return where each run first missed no more than each target, as `running_times.hits`."""
         return hits(self.histories(problem, method), targets, by)
 
     def expected_running_time(
@@ -315,7 +315,7 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
 
 
 def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
-    """ValueError where a point is not in the problem's box."""
+    """Refuse a front with a point that is not in the problem's box."""
     lower, upper = problem.profile.box(problem.bound)
     table = front.coefficients
     for row, column in beyond(table, lower, upper):

@@ -48,7 +48,7 @@ class History(NamedTuple):
 
 
 def hits(histories: Iterable[History], targets: Sequence[float], by: str = "seconds") -> Array:
-    """Where each run first missed no more than each target, shape (runs, targets).
+    """Return where each run first missed no more than each target, shape (runs, targets).
 
     Infinite where it never did; a mark without a value reaches none.
     """

@@ -1,4 +1,4 @@
-"""Which differences between methods are more than chance: ranks, exact tests, effect sizes."""
+"""Tests whether methods differ by more than chance: ranks, exact tests, effect sizes."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def say_power(runs: int, methods: int) -> str:
 
 
 def _runs_needed(pairs: int, least: Callable[[int], float]) -> int:
-    """From how many runs on so many pairs of one kind can have a p by Holm below `ALPHA`."""
+    """Return from how many runs on so many pairs can have a Holm-adjusted p below `ALPHA`."""
     return next(runs for runs in range(2, 1000) if pairs * least(runs) < ALPHA)
 
 

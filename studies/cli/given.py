@@ -104,7 +104,7 @@ class Given:
             raise click.BadParameter(str(error), param_hint="'--drive'") from None
 
     def read_place(self, plant: Plant) -> dict[str, float]:
-        """Where a move is in the grid of a sweep: a value of each axis that was typed."""
+        """Read where a move is in the grid of a sweep: a value of each axis that was typed."""
         typed = [name for name in OF_MOVES if self.typed(name)]
         values = {name: self.read_of_plant(name, plant) for name in typed}
         return single_values(values | parse_parameters(plant, self.parameters))

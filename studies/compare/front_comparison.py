@@ -134,7 +134,7 @@ class Comparison:
         return tuple(run for group in self.groups for run in group.runs)
 
     def above_best(self, points: Array) -> Array:
-        """By what share the energies of points exceed the best front's within their residuals."""
+        """Return the share of energy of points above the best front's within their residuals."""
         return points[:, 1] / within(self.best_front, points[:, 0]) - 1
 
 
@@ -332,7 +332,7 @@ def differ_in_window_alone(task: PointToPoint, other_task: PointToPoint) -> bool
 
 
 def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
-    """Which fronts are runs of one method with one set of settings, by what tells it apart."""
+    """Return which fronts are runs of one method with one set of settings, by its label."""
     groups: dict[str, list[int]] = {}
     for i, front in enumerate(fronts):
         stated = {name: value for name, value in _settings(front).items() if value is not None}

@@ -255,7 +255,7 @@ def _shortened(heading: str, others: Iterable[str]) -> str:
 
 
 def remarks(motions: Sequence[ComparedMotion], unit: str = "rad") -> list[str]:
-    """Why a motion is missing, and which joints turn back."""
+    """Say why a motion is missing, and which joints turn back."""
     # a joint that goes back by more [rad] is said to
     least_turn = 1e-4
     reasons: dict[str, list[str]] = {}

@@ -45,7 +45,7 @@ class Verdict:
 
     @property
     def word(self) -> str:
-        """In a word."""
+        """Verdict in a word."""
         return "holds" if self.holds else "does not hold"
 
 

@@ -320,7 +320,7 @@ def _checked(case: Case, points: int) -> CrossCheck:
 
 
 def _robust(case: Case, starts: int) -> Plan | str:
-    """Within 5 % of the plain cycloid's residual whatever the frequency; or why that cannot be."""
+    """Plan within 5 % of the plain cycloid's residual at every frequency; or say why it fails."""
     task = replace(case.task, uncertainty=Uncertainty(FREQUENCY_ERROR))
     limit = tolerated_residual(case.task)
     try:

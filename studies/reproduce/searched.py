@@ -39,7 +39,7 @@ class Searched:
 
     @cached_property
     def level(self) -> float:
-        """That residual."""
+        """Residual at which the searches are judged."""
         terms = self.which if isinstance(self.which, int) else SIX_TERMS
         return residual_level(self.case, min(terms, SIX_TERMS))
 

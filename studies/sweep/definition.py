@@ -91,7 +91,7 @@ class PlanSettings:
 
     @classmethod
     def of(cls, residual_limit: float | None, bound: float | None, solver: Solver) -> PlanSettings:
-        """From neighbours, by a solver; ValueError where a number is out of range."""
+        """Make settings by which cells start from neighbours; ValueError if out of range."""
         if residual_limit is None:
             residual_limit = 0.0
         limit = not_negative("residual limit", residual_limit, "m")

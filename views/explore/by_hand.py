@@ -354,7 +354,7 @@ class MoveByHand:
 
 
 def _dial(group: str, label: str, unit: str, *ends: float) -> Dial:
-    """In the unit that is shown for one of SI, as its ends are; those of limits are the same."""
+    """Make a dial in the unit that is shown for one of SI, as its ends are; limits share ends."""
     shown, factor = _SHOWN.get(unit, (unit, 1.0))
     low, high = [factor * end for end in ends] or (_LEAST * (label != "residual"), _MOST)
     return Dial(label if unit == "-" else f"{label} [{shown}]", low, high, factor, group)

@@ -164,7 +164,7 @@ def residual_through(plan: Plan, times: Array, along: Sequence[Array], interpola
 
 
 def _with_corners(times: Array, places: Array) -> FreeMotion:
-    """Straight lines between set points, whose speed turns within a short time at each of them."""
+    """Return straight lines between set points, whose speed turns shortly at each of them."""
     lengths = np.diff(times)
     speeds = np.concatenate([[0.0], np.diff(places) / lengths, [0.0]])
     turn = lengths.min() / 8

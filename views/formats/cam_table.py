@@ -179,7 +179,7 @@ def _cam_of(
 
 
 def _slaves(plant: Plant, layout: str, slave: str) -> list[int]:
-    """Which joints a table has; ValueError for one that is none, or where one has to be named."""
+    """Return which joints a table has; ValueError for one that is none, or that is not named."""
     names = list(plant.joint_names)
     if slave:
         if slave not in names:

@@ -245,7 +245,7 @@ def _plan_of(task: PointToPoint) -> str:
 
 
 def _along(points: Sequence[FrontPoint]) -> list[FrontPoint]:
-    """At most so many points as are shown, evenly along the front, its ends among them."""
+    """Return at most so many points as are shown, evenly along the front, its ends among them."""
     if len(points) <= MOST_MOTIONS:
         return list(points)
     places = np.array([(point.residual, point.energy) for point in points])

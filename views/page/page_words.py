@@ -88,7 +88,7 @@ def _figure_name(figure: Figure, plant: Plant) -> str:
 
 
 def spot_words(choice: Choice) -> str:
-    """Where a motion lies: "14.7 mm, 0.0334 J"."""
+    """Say where a motion lies: "14.7 mm, 0.0334 J"."""
     return f"{_residual(choice)}, {_joules(choice.energy)}"
 
 
@@ -133,7 +133,7 @@ def _joules(energy: float, digits: int = 3) -> str:
 
 
 def _apart(first: float, second: float) -> tuple[str, str]:
-    """Two energies with as many digits as tell them apart, three at least."""
+    """Return two energies with as many digits as tell them apart, three at least."""
     least = 3
     most = 6
     for digits in range(least, most):

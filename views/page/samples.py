@@ -46,7 +46,7 @@ def unpacked(block: dict[str, Any]) -> Array:
 def needed_samples(
     times: Array, rows: Array, always: NDArray[np.intp], tolerance: float
 ) -> NDArray[np.intp]:
-    """Which samples are needed, so that straight lines between them are close to all rows.
+    """Return which samples keep straight lines between them close to all rows.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 
 
 def meaning_of(motion: Plan | Floor | JudgedMotion) -> str:
-    """Which of `MEANINGS` a motion is; another word for what is none of them, as a shaper "MZV"."""
+    """Name which of `MEANINGS` a motion is, or what else, such as a shaper "MZV"."""
     if isinstance(motion, Floor):
         return "floor"
     if is_plain_cycloid(motion):

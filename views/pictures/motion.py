@@ -240,7 +240,7 @@ def names_of_curves(plant: Plant, quantity: str) -> list[str]:
 
 
 def _which(plant: Plant, quantity: str, curve: int) -> str:
-    """Which joint or tip a curve is of, where there are several."""
+    """Say which joint or tip a curve is of, where there are several."""
     joints = plant.joint_names
     if len(joints) > 1 and _is_of_joints(quantity):
         return f", {joints[curve]}"
@@ -248,7 +248,7 @@ def _which(plant: Plant, quantity: str, curve: int) -> str:
 
 
 def _which_tip(plant: Plant, curve: int) -> str:
-    """Which of several tips, or along which axis a tip moves that moves in space."""
+    """Say which of several tips, or the axis along which a tip moves that moves in space."""
     place = plant.tip_names[curve].removeprefix("tip_")
     if plant.tip_lines is None:
         return f", tip {place}"
@@ -269,7 +269,7 @@ def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> s
 
 
 def scale_of(quantity: str, tip_unit: str = "m") -> float:
-    """From the quantity's unit to the one that is shown."""
+    """Return the factor from the quantity's unit to the one that is shown."""
     return tip_scale(tip_unit)[1] if _words_and_unit(quantity)[1].is_tip_way else 1.0
 
 

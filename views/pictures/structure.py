@@ -1,4 +1,4 @@
-"""Where structures are at the frames of a film, and how their parts look."""
+"""Places of structures at the frames of a film, and how their parts look."""
 
 from __future__ import annotations
 
@@ -57,13 +57,13 @@ class Structure:
 
     @property
     def paths(self) -> list[Array]:
-        """Where each tip is drawn, shape (frames, 2) [m]."""
+        """Path on which each tip is drawn, shape (frames, 2) [m]."""
         first = self._bent_bodies[0]
         return [part.points[:, -1] for part, body in zip(self.bent, first) if body.tip]
 
     @property
     def trail_begins(self) -> float:
-        """From when on paths of tips are drawn [s]: in space from the start, else on arrival."""
+        """Time from which paths of tips are drawn [s]: in space from the start, else on arrival."""
         task = self.line.plan.task
         return 0.0 if task.plant.in_space else task.duration
 

@@ -142,7 +142,7 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
 
 
 def _residual_line(task: PointToPoint) -> str:
-    """Where and when the residuals of fronts are measured."""
+    """Say where and when the residuals of fronts are measured."""
     return f"residuals are {residual_place(task)}"
 
 

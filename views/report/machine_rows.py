@@ -116,7 +116,7 @@ def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row
 
 
 def nothing_predicted(plant: Plant, predictions: Sequence[Prediction]) -> ValueError | None:
-    """Why a machine predicts nothing of some ring-downs; None where it predicts of all."""
+    """Return the error if a machine predicts nothing of a ring-down; None if it predicts of all."""
     failed = [prediction for prediction in predictions if prediction.share <= 0]
     if not failed:
         return None

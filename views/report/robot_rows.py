@@ -41,7 +41,7 @@ def robot_rows(robot: Robot, path: GeometricPath) -> list[Row]:
 
 
 def usual_path(robot: Robot) -> GeometricPath:
-    """Straight, all joints by one radian or as far as they go, from 0 or where they begin."""
+    """Return a straight path: all joints by a radian or as far as they go, from 0 or their end."""
     least, most = np.array(robot.ranges()).T
     start = np.clip(np.zeros(len(robot.joints)), least, most)
     up = np.minimum(start + 1.0, most)
@@ -72,7 +72,7 @@ def _mass_rows(robot: Robot) -> list[Row]:
 
 
 def _place_words(beam: Beam) -> str:
-    """Where it is clamped and lies, unless it lies along z from the link's origin."""
+    """Say where a beam is clamped and lies, unless along z from the link's origin."""
     words = ""
     if any(beam.offset):
         words += f" [{', '.join(f'{value:g}' for value in beam.offset)}] m"

@@ -50,7 +50,7 @@ def millimetres(length: float) -> str:
 
 
 def span_words(begin: float, end: float) -> str:
-    """From when to when [s], in milliseconds: a recorder's clock may count from anywhere."""
+    """Say from when to when [s], to the millisecond: a recorder's clock may count from anywhere."""
     return " to ".join(f"{round(time, 3):.12g}" for time in (begin, end)) + " s"
 
 
@@ -73,7 +73,7 @@ def window_words(window: float) -> str:
 
 
 def residual_place(task: PointToPoint) -> str:
-    """Where and when a residual is measured: "at the tip within 1 s"."""
+    """Say where and when a residual is measured: "at the tip within 1 s"."""
     tips = 1 if task.plant.tip_lines is not None else task.plant.tips  # one, by its distance
     scenarios = len(task.scenarios)
     words = "tip" if tips == 1 else f"worst of {tips} tips"

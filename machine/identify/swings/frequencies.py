@@ -1,4 +1,4 @@
-"""At which frequency recordings swing, and whether their units can be right."""
+"""Find the frequencies at which recordings swing, and doubt their units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a recording rings down by itself: found by how its swing grows and decays."""
+"""Find where a recording rings down by itself, by how its swing grows and decays."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _top(size: Array, place: int, reach: int) -> int:
 
 
 def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
-    """Where the joint is at rest: it moves no more in a period than its noise, or creeps.
+    """Return where the joint is at rest: it moves no more in a period than its noise, or creeps.
 
     A joint that creeps moves less than 3 % of its whole way in a period.
     """

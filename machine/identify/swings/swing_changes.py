@@ -69,7 +69,7 @@ def with_changes(fitter: PartFitter, part: Part, best: Fit, rows: slice) -> Part
 
 
 def _cause_of_changes(fitter: PartFitter, part: Part) -> str:
-    """Why frequency and damping change along a swing: by dry friction, where that meets it."""
+    """Say why frequency and damping change along a swing: by dry friction, where that meets it."""
     much_better = 0.7  # times the misfit of one decay
     piece = fitter.thinned(fitter.piece(part))
     dry = fit_dry(piece, fitter.frequency_of(part.vector), max(fitter.damping_of(part), 1e-3))

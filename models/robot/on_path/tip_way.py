@@ -55,7 +55,7 @@ class TipWay:
         self._frames = CubicSpline(places, np.array(frames))
 
     def deviations(self, places: Array, tips: Array, target: float) -> Array:
-        """Where the tip is, as seen from where it rests at a target [m], shape (3, samples).
+        """Return where the tip is, seen from where it rests at a target [m], shape (3, samples).
 
         The displacements of the tip are those along the axes of its own frame in which it moves.
         """
