@@ -132,7 +132,7 @@ def map_figure(
 def narrow_map_figure(
     cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> Figure:
-    """The same for a phone: panels below each other, budget by coefficients in wider cells."""
+    """Draw the map for a phone: panels below each other, budget by coefficients in wider cells."""
     figure = new_figure(NARROW, 2.2 + 4.1 * len(ways))
     _head_of_map(figure, cells, ways, rival)
     axes = figure.subplots(len(ways), 1, squeeze=False)[:, 0]
@@ -204,7 +204,7 @@ def _counted(
 
 
 def _the(rival: str) -> str:
-    """What a search is compared with, as a subject."""
+    """Name what a search is compared with, as a subject."""
     return "the gradient" if rival == "gradient" else rival
 
 

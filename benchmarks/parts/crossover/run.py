@@ -73,7 +73,7 @@ def missing_of(
     axes: Sequence[str] = (),
     most_rounds: int | None = None,
 ) -> list[Planned]:
-    """What is to be run still."""
+    """Return what is to be run still."""
     plan = plan_of(results)
     done = done_keys(results)
     of_part = plan[part[0] - 1 :: part[1]]
@@ -87,7 +87,7 @@ def missing_of(
 
 
 def batches(missing: Iterable[Planned]) -> Iterator[list[Planned]]:
-    """Of so many jobs, in order."""
+    """Yield batches of so many jobs, in order."""
     remaining = iter(missing)
     while batch := list(islice(remaining, BATCH)):
         yield batch
