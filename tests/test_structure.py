@@ -68,7 +68,7 @@ def imported(tree):
 
 
 def reached(begin, needs):
-    """What a module needs, and what these need."""
+    """Return what a module needs, and what these need."""
     seen = set()
     waiting = [*needs[begin]]
     while waiting:
@@ -93,7 +93,7 @@ def test_no_files_need_each_other_not_even_for_a_type():
 
 
 def test_no_class_has_the_name_of_a_type_that_is_written_elsewhere():
-    """Such as Values = Sequence[Expression] beside a class Values: one is taken for the other."""
+    """A type Values = Sequence[Expression] beside a class Values is taken for the other one."""
     classes = {
         node.name: path
         for path, tree in TREES.items()

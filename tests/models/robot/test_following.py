@@ -29,14 +29,14 @@ CHAIN = MIMIC.replace("</robot>", f"{SLIDER}</robot>")
 
 
 def _torques(robot, motion):
-    """Of the driven joints, the base still."""
+    """Return torques of the driven joints, the base still."""
     still = np.zeros((3, robot.dynamics.sprung))
     torques = torques_of(robot, *np.hstack([motion, still]))
     return torques[: len(robot.joints)]
 
 
 def test_inertias_and_torques_are_those_of_the_joints_by_virtual_work():
-    """The same bodies with every joint driven, put where the followers are."""
+    """Bodies with every joint driven, put where the followers are, need the same."""
     alone = CHAIN
     for tag in ('<mimic joint="shoulder" multiplier="-2" offset="0.3"/>',
                 '<mimic joint="elbow" multiplier="0.1"/>'):  # fmt: skip
