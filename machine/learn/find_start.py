@@ -1,4 +1,4 @@
-"""Where in a recording the move of a plan begins: found by the joint, the force or the tip.
+"""Find where in a recording the move of a plan begins, by the joint, the force or the tip.
 
 What was recorded is compared with what the plan says of it, at every place of the recording: the
 joint's angle with its path, the torque with what acceleration, swing and friction take, a tip's
@@ -39,7 +39,7 @@ _SAME_WAY = 0.03
 
 @dataclass(frozen=True)
 class Start:
-    """Where a move begins in a recording.
+    """Place where a move begins in a recording.
 
     Attributes
     ----------
@@ -128,7 +128,7 @@ def _with_frequencies(plan: Plan, factor: float) -> JudgedMotion | None:
 
 
 def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
-    """That a joint leaves the plan's path by more than a servo does, in words; empty where not.
+    """Say that a joint leaves the plan's path by more than a servo does; empty where not.
 
     It may be another plan's move.
     """
@@ -147,7 +147,7 @@ def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
 
 
 def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
-    """ValueError where a tip follows the joint's path far better than what was given as the joint.
+    """Refuse a tip that follows the joint's path far better than what was given as the joint.
 
     A tip swings beside the path, and a joint does not.
     """
@@ -167,7 +167,7 @@ def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
 
 
 def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
-    """ValueError where a recording is of an earlier move of a plan's history, not of the plan."""
+    """Refuse a recording of an earlier move of a plan's history, not of the plan."""
     far_better = 0.2  # times what the plan leaves unexplained
     if start.signal not in ("angle", "tip") or plan.learned is None:
         return
@@ -301,7 +301,7 @@ class StartSearch:
         return lag + step * float(found.x[0]), 1 - float(found.fun)
 
     def refuse_stretched(self, name: str, lag: float, explained: float, met: float) -> None:
-        """ValueError where a clock that is off by some per mille meets the move, not the plan's.
+        """Refuse a move that is met by a clock off by some per mille, and not by the plan's.
 
         A move is met where no more than a share is unexplained, and far less than by the plan.
         """
@@ -341,7 +341,7 @@ class StartSearch:
         return self._sizes((window - window.mean()) @ self._courses)
 
     def refuse_other_clock(self, name: str, explained: float, most: float) -> None:
-        """ValueError where the move is met by a clock that runs faster or slower.
+        """Refuse a move that is met by a clock that runs faster or slower.
 
         A move is met where no more than a share is unexplained.
         """

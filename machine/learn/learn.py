@@ -129,7 +129,7 @@ def _evidence(
 
 
 def check_plan(plan: Plan) -> None:
-    """ValueError where nothing of a plan could be learned."""
+    """Refuse a plan of which nothing could be learned."""
     plant = plan.task.plant
     if plan.profile.size == 0:
         raise ValueError(

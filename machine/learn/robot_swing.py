@@ -279,7 +279,7 @@ class _Fit:
         )
 
     def with_ring(self) -> Array:
-        """Where a fit with one more ring begins."""
+        """Return where a fit with one more ring begins."""
         starts = [
             np.append(self.found, [np.log(tau * hertz), np.log(damping)])
             for hertz in _RING[0]

@@ -50,7 +50,7 @@ def part_of(text: str) -> tuple[int, int]:
 
 
 def refuse_axes(axes: Sequence[str]) -> None:
-    """ValueError where an axis is not of the plan."""
+    """Refuse an axis that is not of the plan."""
     for axis in axes:
         if axis not in AXES:
             raise ValueError(f"no axis is called {axis!r}; give one of {', '.join(AXES)}")

@@ -1,4 +1,4 @@
-"""Where the tip of a robot rests along its path, in space."""
+"""The place in space where the tip of a robot rests along its path."""
 
 from __future__ import annotations
 
