@@ -142,7 +142,7 @@ def plans(qa: Any, move: Move, **solver: Any) -> Callable[[], float]:
 
 
 def ipopt_plans(qa: Any, move: Move) -> Callable[[], float]:
-    """The same by IPOPT."""
+    """Return a function that plans the move by IPOPT, and its energy."""
     return plans(qa, move, solver=qa.Ipopt() if hasattr(qa, "Ipopt") else "ipopt")
 
 

@@ -58,7 +58,7 @@ which braking feeds power back."""
 
 
 def electric_power(torque: Array, speed: Array) -> Array:
-    """What the motor takes [W]."""
+    """Return the power that the motor takes [W]."""
     friction = COULOMB + (STICTION - COULOMB) * np.exp(-((speed / STRIBECK) ** 2))
     torque = torque + np.sign(speed) * friction
     cell = np.digitize(np.abs(torque), TORQUES), np.digitize(np.abs(speed), SPEEDS)
@@ -104,7 +104,7 @@ class BlackBox(Function):
         self._simulate = ca.Function("simulate", [a], nodes)
 
     def objectives(self, rows: Array) -> Array:
-        """Of rows: residual [m] and cost [J]."""
+        """Return residual [m] and cost [J] of rows."""
         torque, speed, weights = (part.full() for part in self._simulate(rows.T))
         energy = (weights * electric_power(torque, speed)).sum(axis=0)
         return np.column_stack([self.move(rows)[0][:, 0], energy])
@@ -119,7 +119,7 @@ class Terms(Function):
         self.lower, self.upper = np.append(0.5, self.lower), np.append(10.49, self.upper)
 
     def objectives(self, rows: Array) -> Array:
-        """Of rows: residual [m] and cost [J]."""
+        """Return residual [m] and cost [J] of rows."""
         count = np.round(rows[:, :1])
         found = self.move(np.where(np.arange(MOST_TERMS) < count, rows[:, 1:], 0.0))[0]
         return found + count * [0.0, self.price]
@@ -172,7 +172,7 @@ Way = Callable[[Function, int, int], None]
 
 
 def ways_of(problem: NamedProblem, kind: type[Function]) -> dict[str, Way]:
-    """What is compared, by name."""
+    """Return what is compared, by name."""
     ways: dict[str, Way] = {
         PRESETS[name].label: partial(searched, name) for name in ("nsga2", "gde3", "cmopso")
     }

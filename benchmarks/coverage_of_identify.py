@@ -1,4 +1,4 @@
-"""How far identify can be trusted, on made-up recordings whose truth is known.
+"""Test how far identify can be trusted, on made-up recordings whose truth is known.
 
     python benchmarks/coverage_of_identify.py [--runs 300] [--planted 60] [--clean 60] [--seed 0]
 
@@ -44,7 +44,7 @@ def sampled(rng, hertz, periods):
 
 
 def sensed(rng, tip):
-    """What a sensor makes of a tip: noise, an offset, a resolution."""
+    """Return what a sensor makes of a tip: noise, an offset, a resolution."""
     noise = np.exp(rng.uniform(np.log(0.003), np.log(0.05))) * np.abs(tip).max()
     seen = tip + noise * rng.standard_normal(len(tip)) + rng.uniform(-1, 1) * np.abs(tip).max()
     step = rng.choice([0.0, 0.01, 0.03]) * np.abs(tip).max()
@@ -198,7 +198,7 @@ def ends(found, name):
 
 
 def right(found, hertz):
-    """Whether the frequency is in its interval, or within 0.3 % where that is narrower."""
+    """Return whether the frequency is in its interval, or within 0.3 % if that is narrower."""
     if isinstance(found, str) or (at := ends(found, "omega")) is None:
         return False
     low, high = (end / TURN for end in at)

@@ -26,7 +26,7 @@ RESULTS = Path(__file__).parents[1] / "docs" / "results"
 
 
 def parser() -> argparse.ArgumentParser:
-    """What may be typed."""
+    """Return the parser of what may be typed."""
     arguments = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -71,7 +71,7 @@ BOUNDS = (0.02, 0.01, 0.005)
 
 @dataclass(frozen=True)
 class Answer:
-    """What one side found: its own energy [J], its motion, IPOPT's iterations."""
+    """Answer of one side: its own energy [J], its motion, IPOPT's iterations."""
 
     energy: float
     free: FreeMotion

@@ -1,4 +1,4 @@
-"""How operations end that Ctrl-C interrupts at random instants, and whether the next call works.
+"""Interrupt operations by Ctrl-C at random instants, and see if the next call works.
 
     python benchmarks/interrupts.py [--presses 1500] [--only path plan ...] [--seed 1]
 
@@ -40,7 +40,7 @@ PROMPT_SECONDS = 5.0
 
 
 def operations(folder: Path) -> dict[str, Callable[[], Any]]:
-    """What is pressed in this process: each gives a number that the next call must give again."""
+    """Return what is pressed in this process: each gives a number that the next must give again."""
     from matplotlib import pyplot
 
     task = qa.PointToPoint(qa.SingleLinkManipulator(), pi / 6, 0.8)
@@ -134,7 +134,7 @@ COMMANDS = {
 
 
 def press_here(work: Callable[[], Any], instant: float, right: Any) -> tuple[str, float]:
-    """How an operation ends that is pressed after so many seconds, and how long that takes."""
+    """Return how an operation ends that is pressed after so many seconds, and how long it takes."""
     pressed: list[float] = []
 
     def press() -> None:
@@ -169,7 +169,7 @@ def press_here(work: Callable[[], Any], instant: float, right: Any) -> tuple[str
 
 
 def press_fresh(name: str, instant: float) -> str:
-    """How an operation ends in a process of its own."""
+    """Return how an operation ends in a process of its own."""
     prepare, work, _ = FRESH_WORK[name]
     script = FRESH.format(prepare=prepare, work=work, instant=instant)
     ran = subprocess.run(
@@ -181,7 +181,7 @@ def press_fresh(name: str, instant: float) -> str:
 
 
 def press_command(line: str, folder: Path, instant: float) -> str:
-    """How a command ends that is pressed after so many seconds."""
+    """Return how a command ends that is pressed after so many seconds."""
     with tempfile.TemporaryDirectory(dir=folder) as place:
         command = [sys.executable, "-m", "quietarm", *shlex.split(line)]
         process = subprocess.Popen(
@@ -201,7 +201,7 @@ def press_command(line: str, folder: Path, instant: float) -> str:
 
 
 def seconds_of(work: Callable[[], Any]) -> float:
-    """How long it takes."""
+    """Return how long work takes [s]."""
     begun = time.monotonic()
     work()
     return time.monotonic() - begun

@@ -1,4 +1,4 @@
-"""What moves leave while a plan is learned from them: machines that are not quietarm's model.
+"""Measure what moves leave while a plan is learned from them, on machines beyond the model.
 
     pip install ".[benchmark]"
     python benchmarks/learning.py [--machine gantry picker] [--seeds 10] [--output learning.csv]

@@ -1,4 +1,4 @@
-"""What an iterative learning control of the set point leaves, move by move: a rival of `learn`.
+"""Measure what a rival of `learn` leaves, move by move: iterative learning of the set point.
 
     python benchmarks/learning_rivals.py [--machine gantry picker] [--moves 4] [--seeds 1]
 
@@ -22,7 +22,7 @@ from quietarm import Plan
 
 
 def residuals(move: Move, plan: Plan, moves: int, seed: int) -> tuple[list[float], float]:
-    """What each move leaves [m], and the energy of the last [J]."""
+    """Return what each move leaves [m], and the energy of the last [J]."""
     random = np.random.default_rng(seed)
     plant = plan.task.plant
     rival = SetPointLearning(plant.omega1 / (2 * np.pi), plant.zeta1)

@@ -1,4 +1,4 @@
-"""What a robot's moves leave in MuJoCo while its plan is learned from them.
+"""Measure what a robot's moves leave in MuJoCo while its plan is learned from them.
 
     pip install "quietarm[robot]" mujoco example-robot-data
     python benchmarks/learning_robots.py [--robot ur5 panda] [--moves 5] [--output table.csv]
@@ -93,7 +93,7 @@ def right_plant(name: str) -> qa.models.Plant:
 
 
 def wrong_plant(case: Case) -> Any:
-    """The same with a frequency that is wrong by a share."""
+    """Return the right plant with a frequency that is wrong by a share."""
     plant: Any = right_plant(case.robot)
     end = tuple(plant.path(1.0).tolist())
     frequency = float(plant.robot.frequencies(end)[0]) * (1 + case.error)
@@ -166,7 +166,7 @@ def still_after(motion: Callable[[float], Any], duration: float) -> Callable[[fl
 
 
 def _felt(truth: Truth, q: Array, v: Array, a: Array, p: Array, dp: Array, ddp: Array) -> Array:
-    """What an accelerometer at the tip feels along its own axes, by differences in time."""
+    """Return what an accelerometer at the tip feels along its own axes, by differences in time."""
     step = 1e-4
 
     def tip(at: float) -> Array:

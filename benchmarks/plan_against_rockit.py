@@ -85,7 +85,7 @@ class Move:
         return cls(title, task, bound, scale, best.energy)
 
     def above(self, coefficients: np.ndarray) -> float:
-        """How far the true energy of a motion is from the best, relative."""
+        """Return how far the true energy of a motion is above the best, relative."""
         return JudgedMotion.of_profile(self.task, PROFILE, coefficients).energy / self.best - 1
 
     def plan(self) -> Plan:

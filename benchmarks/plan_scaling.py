@@ -1,4 +1,4 @@
-"""How plan time grows with the number of terms and of steps.
+"""Measure how plan time grows with the number of terms and of steps.
 
     pip install ".[benchmark]"
     python benchmarks/plan_scaling.py [--repetitions 3]

@@ -1,4 +1,4 @@
-"""What a real drive leaves of a plan: servo, backlash, dead time, tool, encoder, dry friction.
+"""Replay plans on a real drive: servo, backlash, dead time, tool, encoder, dry friction.
 
     pip install ".[benchmark]"
     python benchmarks/real_drive.py [--machine gantry picker] [--output real_drive.csv]
@@ -89,7 +89,7 @@ STRUCTURES: dict[str, tuple[Vary, tuple[float, ...]]] = {
 
 @dataclass(frozen=True)
 class Model:
-    """What a recording says of the structure: the way, frequency [Hz], damping and swing [m]."""
+    """Model of the structure by a recording: the way, frequency [Hz], damping and swing [m]."""
 
     way: str
     frequency: float
@@ -116,7 +116,7 @@ class Case:
     band: float = BAND
 
     def row(self, found: Outcome) -> list[str]:
-        """Its row of the csv."""
+        """Return the case's row of the csv."""
         return [
             self.machine.name,
             self.study,
@@ -258,7 +258,7 @@ class Campaign:
                         )
 
     def margins_on_every_drive(self) -> Iterator[Case]:
-        """The same for one band, and ZVD, on machines with another drive."""
+        """Yield cases of one band, and of ZVD, on machines with another drive."""
         zvd, _ = self.motions()["ZVD"]
         different = dict[Machine, str]()
         for study, value, drive in self.drives():

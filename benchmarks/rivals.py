@@ -99,7 +99,7 @@ def valued(function: Any, x: Any) -> tuple[Any, float]:
 
 
 def beats(one: Any, of_one: float, other: Any, of_other: float) -> bool:
-    """Whether one candidate is at least as good as another, and feasible or nearer to it."""
+    """Return whether one candidate violates less than another, or as much and is as good."""
     return of_one < of_other or (of_one == of_other and bool((one <= other).all()))
 
 
@@ -126,7 +126,7 @@ def missing(problem: NamedProblem, method: str, seed: int, budget: int) -> float
 
 
 def done_before() -> dict[tuple[str, int, str, int], float]:
-    """What the file has."""
+    """Return the hypervolume deficits that the file has."""
     if not RESULTS.exists():
         return {}
     with open(RESULTS, encoding="utf-8") as file:

@@ -175,20 +175,20 @@ class Frozen(RobotOnPath):
     frozen_at = 1.0
 
     def modal_accelerations(self, joint: JointMotion, W: list, dW: list) -> list:
-        """As at that place of the path."""
+        """Return modal accelerations as at that place of the path."""
         place = self.frozen_at + 0.0 * joint.angle
         return super().modal_accelerations(joint._replace(angle=place), W, dW)
 
 
 class FrozenAtTheStart(Frozen):
-    """As at the start."""
+    """Robot frozen as at the start of the path."""
 
     name = "robot-frozen-at-the-start"
     frozen_at = 0.0
 
 
 class FrozenInTheMiddle(Frozen):
-    """As in the middle of the path."""
+    """Robot frozen as in the middle of the path."""
 
     name = "robot-frozen-in-the-middle"
     frozen_at = 0.5
@@ -341,7 +341,7 @@ def figure_12() -> str:
 
 
 def _with_loads(task: qa.PointToPoint, truth: Callable[[float], Truth]) -> str:
-    """What is left with other loads by a robust plan, a plan for one load, and the cycloid."""
+    """Say what a robust plan, a plan for one load, and the cycloid leave with other loads."""
     plans = {
         "plan with errors": qa.plan_move(task, qa.CycloidPolynomial(8)),
         "plan without": qa.plan_move(task.certain),

@@ -1,4 +1,4 @@
-"""What a robot's plan spends where: the processor's seconds of the UR5 with its bar.
+"""Measure where a robot's plan spends processor time, on the UR5 with its bar.
 
     pip install "quietarm[robot]" example-robot-data
     python benchmarks/robot_times.py [stages] [commands]

@@ -1,4 +1,4 @@
-"""What robustness costs: insensitivity to the frequency over energy, against input shapers.
+"""Measure what robustness costs: insensitivity to the frequency over energy, against shapers.
 
     pip install ".[benchmark]"
     python benchmarks/robustness.py [--starts 2] [--figure robustness.png]

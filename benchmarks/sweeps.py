@@ -108,7 +108,7 @@ def memory(folder: Path) -> None:
 
 
 def killed(folder: Path) -> None:
-    """The same dataset whatever is killed."""
+    """Show that the dataset is the same, whatever is killed."""
 
     def asked(name: str, *more: str) -> list[str]:
         return line(folder, name, "0.6:1.4:0.0035087719298245615", "--quiet", *more)

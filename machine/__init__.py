@@ -1,4 +1,4 @@
-"""Between a machine and its model: its recordings, and the plant that they tell of.
+"""Recordings of a machine, and the plant that they tell of.
 
 Rooms: `tables` reads files of numbers as other programs write them, `recordings` are what was
 measured, mended, `identify` finds a plant's parameters from them, and `learn` the next plan from

@@ -439,7 +439,7 @@ def _run(job: Job) -> tuple[str, Front | str]:
 
 
 def _reason(error: BaseException) -> str:
-    """Why there is no front, in one line."""
+    """Say why there is no front, in one line."""
     text = " ".join(str(error).split())
     if isinstance(error, QuietarmError | ValueError) and text:
         return text

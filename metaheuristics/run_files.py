@@ -29,7 +29,7 @@ def digest_of_job(job: Job) -> str:
 
 
 def check_run(front: Front, job: Job, path: Path) -> None:
-    """ValueError where a file does not hold what a bench wrote for a job.
+    """Refuse a file that does not hold what a bench wrote for a job.
 
     That it is as it was written, its checksum says. A run of 2.0.0 has no such digest of its job:
     what it says of that is compared, and some of its motions are evaluated again.

@@ -1,4 +1,4 @@
-"""Which points of many a front has: at even distances, with the best at each residual."""
+"""Choice of the points of a front from many: at even distances, the best at each residual."""
 
 from __future__ import annotations
 

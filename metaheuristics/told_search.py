@@ -307,7 +307,7 @@ class Search:
         return before.told
 
     def _place_of(self, row: Array, taken: Sequence[int]) -> int:
-        """Which of the candidates that wait is meant."""
+        """Return which of the candidates that wait is meant."""
         size = self._run.function.upper - self._run.function.lower
         for place, pending in enumerate(self._pending):
             waits = self._values[place] is None and place not in taken
@@ -397,7 +397,7 @@ class Search:
 
 
 class _Exchange:
-    """Where the thread of a method and whoever measures meet: one of them waits at any time."""
+    """Meeting place of a method's thread and whoever measures: one of them waits at any time."""
 
     def __init__(self) -> None:
         self._questions = queue.SimpleQueue[Any]()
@@ -436,11 +436,11 @@ class _Exchange:
 
 
 class _ClosedError(BaseException):
-    """Nobody measures any more."""
+    """Error in a method's thread when nobody measures any more."""
 
 
 def _stamp(path: Path | None) -> tuple[int, int] | None:
-    """When a file was changed, and its inode, which each whole writing makes anew; None of none."""
+    """Return when a file was changed, and its inode, which each whole writing makes anew."""
     if path is None or not path.exists():
         return None
     status = path.stat()

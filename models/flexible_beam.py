@@ -151,7 +151,7 @@ class FlexibleBeam(Plant):
 
     @property
     def tip_reach(self) -> float:
-        """From the axis to the tip."""
+        """Distance from the axis to the tip."""
         return self.hub_radius + self.length
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:

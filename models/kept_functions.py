@@ -281,7 +281,7 @@ def name_of(parts: Sequence[Any]) -> str | None:
 
 
 class _UnsaidError(Exception):
-    """A part does not say by its fields all that it is."""
+    """Error for a part that does not say by its fields all that it is."""
 
 
 @cache

@@ -287,7 +287,7 @@ class Plant(_Driven, ABC):
     def tip_deviations(
         self, places: np.ndarray, tips: np.ndarray, target: float
     ) -> np.ndarray | None:
-        """Where the tips are, as seen from where they rest with the joint at the target [m].
+        """Return where the tips are, as seen from where they rest with the joint at the target [m].
 
         By the joint's angle or its place on the path, shape (samples,), and the tips' displacements
         there, shape (tips, samples). A row for each tip; where `tip_lines` are of one tip that

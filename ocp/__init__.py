@@ -1,4 +1,4 @@
-"""What is asked, and the gradient answer.
+"""Tasks that are asked for, and the gradient's answers.
 
 What is asked: `task` with its limits, and how a joint may move, `profiles`. What a motion costs:
 `simulation`, `robustness`. The gradient's answers: `solvers` solve, and `planning`, `front` and

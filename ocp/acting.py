@@ -1,4 +1,4 @@
-"""When a tool may act: the time until its tip stays within a band about the target.
+"""The time when a tool may act: until its tip stays within a band about the target.
 
 The time is counted from the command's start. The target is where the tip rests after arrival, its
 static sag included. During the move the tip's deviation is what the joint has still to go, and the
@@ -50,7 +50,7 @@ _CLOSER = 2
 
 @dataclass(frozen=True)
 class Acting:
-    """When a tool may act in the worst case.
+    """The time when a tool may act in the worst case.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class ActingMotion:
 
     @cached_property
     def acting(self) -> Acting | None:
-        """When the tip stays within the task's band in the worst case; None without a band."""
+        """Time when the tip stays within the task's band in the worst case; None without a band."""
         motion: Any = self
         if motion.task.band is None:
             return None
@@ -257,7 +257,7 @@ def _splined(times: Array, rows: Array, in_space: bool) -> Distance:
 
 
 def _distances(rows: Array, in_space: bool) -> Array:
-    """How far the tips are from their targets: the farthest of several, one by all its axes."""
+    """Return the tips' distances from their targets: the farthest of several, one in space."""
     return np.linalg.norm(rows, axis=0) if in_space else np.abs(rows).max(axis=0)
 
 
@@ -285,7 +285,7 @@ def _last_beyond(distance: Distance, times: Array, band: float) -> float | None:
 
 
 def _root(function: Callable[[float], float], begin: float, end: float) -> float:
-    """Where a function changes its sign between two times."""
+    """Return where a function changes its sign between two times."""
     from scipy.optimize import brentq  # takes a quarter of a second to load
 
     found: Any = brentq(function, begin, end)
@@ -293,7 +293,7 @@ def _root(function: Callable[[float], float], begin: float, end: float) -> float
 
 
 def _peak(function: Callable[[float], float], begin: float, end: float) -> float:
-    """Where a function is largest between two times, of which it has one peak."""
+    """Return where a function is largest between two times, of which it has one peak."""
     from scipy.optimize import minimize_scalar
 
     found: Any = minimize_scalar(
@@ -365,7 +365,7 @@ def worst_time_to_act(motion: JudgedMotion, band: float, ranges: Mapping[str, fl
 def _after_arrival(
     motion: JudgedMotion, band: float, ranges: Mapping[str, float], errors: Array
 ) -> Array:
-    """How long after arrival the tip is last beyond the band, for each row of errors."""
+    """Return how long after arrival the tip is last beyond the band, for each row of errors."""
     faster = 1 + max(ranges.values())  # any of them may be a frequency
     steps = max(ROLLOUT_STEPS, math.ceil(faster * default_steps(motion.task, least=1)))
     evaluator = motion.by_steps(steps, quantities=[], error_names=tuple(ranges))

@@ -102,7 +102,7 @@ def table_of(coefficients: ArrayLike, columns: int | None = None) -> NDArray[np.
 
 
 def count_of(name: str, values: ArrayLike) -> int:
-    """How many numbers are given; ValueError where no array can be made of them."""
+    """Count the numbers that are given; ValueError where no array can be made of them."""
     return numbers(name, values, "a list of numbers", infinite=True).size
 
 
@@ -139,7 +139,7 @@ def hashable(name: str, value: object) -> None:
 
 
 def _instead_of(value: Any, kind: type[Any]) -> str:
-    """What to give: an object of the class that was given or named, else the class's example."""
+    """Say what to give: an object of the class that was given or named, else its example."""
     meant = value if isinstance(value, type) and issubclass(value, kind) else None
     if isinstance(value, str):
         named = known(kind)
@@ -154,7 +154,7 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
 
 
 def _construction(kind: type[Any]) -> str:
-    """How an object of a class is made, with the arguments that it needs."""
+    """Say how an object of a class is made, with the arguments that it needs."""
     return f"{kind.__name__}({', '.join(_needed(kind))})"
 
 
@@ -255,7 +255,7 @@ def _descendants(family: type[T]) -> list[type[T]]:
 
 
 def ships(kind: type[Any]) -> bool:
-    """Whether a class comes with quietarm."""
+    """Return whether a class comes with quietarm."""
     return kind.__module__.startswith("quietarm.")
 
 
@@ -270,7 +270,7 @@ def forgotten_if_refused(kind: Any) -> Iterator[None]:
 
 
 def failed_in(what: str, kind: type[Any], error: BaseException) -> ValueError:
-    """What to raise where lines of a user's own class fail: what, where and why, in one line."""
+    """Return the error of lines that fail in a user's class: what, where and why, in one line."""
     file = getattr(sys.modules.get(kind.__module__), "__file__", None)
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame.lineno for frame in frames if frame.filename == file]

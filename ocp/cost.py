@@ -1,4 +1,4 @@
-"""What was computed so far in this thread: the work that methods are compared by."""
+"""Work that was computed so far in this thread, by which methods are compared."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Cost:
     builds: float = 0.0
 
     def since(self, earlier: Cost) -> Cost:
-        """What came after an earlier `copy`."""
+        """Return the cost that came after an earlier `copy`."""
         return Cost(**{name: now - getattr(earlier, name) for name, now in vars(self).items()})
 
     def copy(self) -> Cost:
-        """It as it is now."""
+        """Return the cost as it is now."""
         return Cost(**vars(self))
 
     @contextmanager
@@ -42,7 +42,7 @@ class Cost:
 
 
 class _CostOfThread(local, Cost):
-    """What adds up in each thread by itself."""
+    """The cost that adds up in each thread by itself."""
 
 
 COST = _CostOfThread()

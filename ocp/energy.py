@@ -1,4 +1,4 @@
-"""What a move costs: the energies that a task may ask for, one class a definition."""
+"""Energies of a move that a task may ask for, one class a definition."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Energy(ABC):
 
     @property
     def label(self) -> str:
-        """What the energy is called, as it is typed, too, such as ``copper:0.12``."""
+        """Name of the energy with its numbers, as it is typed, too, such as ``copper:0.12``."""
         energy: Any = self  # every energy is a dataclass
         numbers = ",".join(f"{number:.12g}" for number in astuple(energy))
         return f"{self.name}:{numbers}" if numbers else self.name

@@ -1,4 +1,4 @@
-"""What may go wrong: errors, and how a solve ended."""
+"""Errors that may be raised, and the status with which a solve ended."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class FileFormatError(QuietarmError, ValueError):
 
 
 class SolveStatus(Enum):
-    """How a solve ended; `value` is written to files, `text` is shown to the user."""
+    """The end of a solve; `value` is written to files, `text` is shown to the user."""
 
     OPTIMAL = "optimal"
     ACCEPTABLE = "acceptable"
@@ -50,12 +50,12 @@ class SolveStatus(Enum):
 
     @property
     def solved(self) -> bool:
-        """Whether there is a local optimum, or a feasible motion close to one."""
+        """Return whether there is a local optimum, or a feasible motion close to one."""
         return self in (SolveStatus.OPTIMAL, SolveStatus.ACCEPTABLE)
 
     @property
     def text(self) -> str:
-        """What happened and what to try."""
+        """Words on what happened and what to try."""
         return _TEXTS[self]
 
     @classmethod

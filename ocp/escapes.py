@@ -30,7 +30,7 @@ def printable(text: str) -> str:
 
 
 def one_line(text: str) -> str:
-    """The same in one line: a name with line breaks would be lines of its own making."""
+    """Return a text in one line: a name with line breaks would be lines of its own making."""
     return printable(re.sub(r"[\n\r\t\v\f\x1c-\x1e\x85\u2028\u2029]+", " ", text))
 
 

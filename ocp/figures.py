@@ -176,7 +176,7 @@ def final(quantity: str) -> Callable[[JudgedMotion], float]:
 
 
 def _is_of_several_units(candidate: JudgedMotion, quantity: str) -> bool:
-    """Whether a quantity of this motion has one unit for some joints and another for others."""
+    """Return whether a quantity of this motion has different units for different joints."""
     return candidate.task.plant.joint == MIXED and QUANTITIES[quantity].of_joints
 
 

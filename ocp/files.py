@@ -63,7 +63,7 @@ def check_writable(path: str | Path) -> Path:
 
 
 def unwritable(target: Path, error: OSError) -> ValueError:
-    """What to say of a file that the system refuses to write."""
+    """Return the error for a file that the system refuses to write."""
     reason = (error.strerror or str(error)).lower()
     return ValueError(f"{target} cannot be written: {reason}; choose another place")
 
@@ -141,7 +141,7 @@ def _put_in_place(prepared: Mapping[Path, Path]) -> None:
 
 
 def _kept(target: Path) -> Path | None:
-    """What a file holds, under another name; None where there is no file."""
+    """Copy a file to another name, which is returned; None where there is no file."""
     if not target.exists():
         return None
     kept = _beside(target)

@@ -1,4 +1,4 @@
-"""What quantities of the joints are called, each in the words and the unit of its joint's kind."""
+"""Names of quantities of the joints, each in the words and the unit of its joint's kind."""
 
 from __future__ import annotations
 

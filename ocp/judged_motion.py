@@ -96,7 +96,7 @@ class JudgedMotion(ActingMotion):
         return cls(task, PiecewiseMotion.of_free_motion(task, free))
 
     def perturbed(self, errors: Mapping[str, float]) -> JudgedMotion:
-        """The same motion on the plant with these relative errors, and on no other."""
+        """Return this motion on the plant with these relative errors, and on no other."""
         if not isinstance(errors, Mapping):
             raise TypeError(
                 f"errors are {quoted(errors)}; give them by name, as {{'frequency': 0.1}}"
@@ -104,7 +104,7 @@ class JudgedMotion(ActingMotion):
         return replace(self, task=self.task.certain, errors=dict(errors))
 
     def on(self, task: PointToPoint) -> JudgedMotion:
-        """The same motion for another task of the same move, as one with errors of its plant."""
+        """Return this motion for another task of its move, such as one with errors of the plant."""
         return replace(self, task=task)
 
     def by_steps(self, steps: int, **options: Any) -> Evaluator:
@@ -143,7 +143,7 @@ class JudgedMotion(ActingMotion):
 
     @property
     def motion(self) -> Figures:
-        """The same, by the name that they had in 2.0."""
+        """Figures of the motion, by the name that they had in 2.0."""
         return self.figures
 
     @property
@@ -153,7 +153,7 @@ class JudgedMotion(ActingMotion):
 
     @property
     def overshoot(self) -> float:
-        """How far the joint exceeds the target [rad], 0 if it does not."""
+        """Largest way of the joint beyond the target [rad], 0 if it does not exceed it."""
         past_target = self._largest(self.moving.path.angle[None]) - self.task.target
         return max(0.0, float((past_target * np.sign(self.task.span)).max()))
 
@@ -272,7 +272,7 @@ class JudgedMotion(ActingMotion):
 
     @property
     def inverts_drive(self) -> bool:
-        """Whether the set points are others than the planned path, so that the load follows it.
+        """Return whether set points differ from the planned path, so that the load follows it.
 
         Not where the plant's frequencies were recorded on the moving servo: they then have it.
         """
@@ -303,7 +303,7 @@ class JudgedMotion(ActingMotion):
 
     @property
     def nominal(self) -> JudgedMotion:
-        """The same motion on the plant without errors."""
+        """Copy of this motion on the plant without errors."""
         return replace(self, errors={}) if self.errors else self
 
     @property

@@ -1,4 +1,4 @@
-"""What a task may limit: quantities on the way and the residual after it, with their bounds."""
+"""Limits of a task: quantities on the way and the residual after it, with their bounds."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class Quantity:
 
     @property
     def option(self) -> str:
-        """Its limit on the command line."""
+        """Name of the option that limits the quantity on the command line."""
         return f"--{self.name.replace('_', '-')}-limit"
 
     @property
@@ -128,12 +128,12 @@ class Quantity:
         return self.unit.joint
 
     def rows(self, plant: Plant) -> int:
-        """How many values it has at one time."""
+        """Return the number of values at one time."""
         return len(self.values(symbolic_sample(plant)))
 
     @lru_cache(maxsize=256)  # noqa: B019 (of few values, which are kept anyway)
     def on(self, joint: str, tip_unit: str) -> Quantity:
-        """The same in the units and words of a kind of joint, and of tip."""
+        """Return this quantity in the units and words of a kind of joint, and of tip."""
         return replace(
             self,
             unit=self.unit.on(joint, tip_unit),
@@ -255,7 +255,7 @@ def remove_quantity(name: str) -> None:
 
 
 def quantities_of(joint: str, tip_unit: str) -> Mapping[str, Quantity]:
-    """The same in a plant's units: metres and newtons of a linear joint, rad where a tip turns."""
+    """Return `QUANTITIES` in a plant's units: m and N of a linear joint, rad if a tip turns."""
     return {name: quantity.on(joint, tip_unit) for name, quantity in QUANTITIES.items()}
 
 
@@ -284,7 +284,7 @@ Bounds = Sides | Mapping[str, Sides]
 
 
 class ByJoint(Mapping[str, Any]):
-    """What is given of some joints by name, a value that does not change."""
+    """Values of some joints by name, as one value that does not change."""
 
     def __init__(self, entries: Mapping[str, Any]) -> None:
         self._entries = dict(entries)
@@ -350,7 +350,7 @@ def _ends(lower: float, upper: float) -> str:
 
 
 def ask_for_jerk(quantities: Iterable[Quantity]) -> bool:
-    """Whether any of these quantities follows from the joint's jerk, which no plant needs."""
+    """Return whether any of these quantities follows from the joint's jerk; no plant needs it."""
     return any(quantity.derivative == OF_THIRD_ORDER for quantity in quantities)
 
 
@@ -456,7 +456,7 @@ class Limit:
 
     @classmethod
     def within(cls, quantity: Quantity, bounds: Bounds, plant: Plant) -> Limit:
-        """Of a task's entry and its plant's joints, whose own bounds become shares of these."""
+        """Make the limit of a task's entry; joints' own bounds become shares of these."""
         if not isinstance(bounds, Mapping):
             return cls(quantity, *sides_of(bounds))
         units = units_of_joints(quantity.name, plant)
@@ -469,12 +469,12 @@ class Limit:
 
     @classmethod
     def of_residual(cls, largest: float, tip_unit: str = "m") -> Limit:
-        """Of the residual, in the tip's unit: 0 asks for rest on arrival."""
+        """Make the limit of the residual, in the tip's unit: 0 asks for rest on arrival."""
         return cls(_RESIDUAL.on(ROTARY, tip_unit), -largest, largest)
 
     @classmethod
     def of_line(cls, line: TorqueSpeedLine) -> Limit:
-        """Of the torque by a torque-speed line."""
+        """Make the limit of the torque by a torque-speed line."""
         return cls(
             Quantity(
                 TORQUE_SPEED,
@@ -494,17 +494,17 @@ class Limit:
 
     @property
     def label(self) -> str:
-        """What messages call it: torque-speed, or the quantity; of a linear joint a force."""
+        """Name in messages: torque-speed, or the quantity; of a linear joint a force."""
         return str(self.quantity.words)
 
     @property
     def both_ways(self) -> bool:
-        """Whether it is the same in both directions."""
+        """Return whether the limit is the same in both directions."""
         return self.lower == -self.upper
 
     @property
     def is_peak(self) -> bool:
-        """Whether it is of the largest absolute value of a quantity in the diagnostics."""
+        """Return whether it limits the largest absolute value of a quantity in the diagnostics."""
         of_one = not isinstance(self.quantity.values, Shares)
         return of_one and self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
 
@@ -519,7 +519,7 @@ class Limit:
         return (-1.0, 1.0) if self.both_ways else (self.lower / self.size, self.upper / self.size)
 
     def peak(self, least: Any, largest: Any) -> Any:
-        """How large values from the least to the largest are, to be held against the size.
+        """Return how large values from the least to the largest are, to compare with the size.
 
         The largest absolute one; of a direction with a smaller bound values count for more.
         """
@@ -531,11 +531,11 @@ class Limit:
         return float(self.peak(*figures.range_of(self.quantity)))
 
     def keeps(self, peak: float, tolerance: float = 0.0, at_rest: float = 0.0) -> bool:
-        """Whether a peak is within it, by a share; a residual also below what counts as rest."""
+        """Return whether a peak is within the limit, by a share, or a residual counts as rest."""
         return peak <= max(self.size * (1 + tolerance), at_rest if self.name == RESIDUAL else 0.0)
 
     def price(self, multipliers: NDArray[np.float64]) -> float:
-        """What the objective falls by if it is widened, by the multipliers of its values."""
+        """Return how far the objective falls if the limit widens, by its values' multipliers."""
         below, above = self.sides
         return float(np.where(multipliers > 0, above, below) @ multipliers)
 

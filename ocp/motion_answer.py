@@ -40,7 +40,7 @@ class MotionAnswer(Answer):
 
     @property
     def motion(self) -> Figures:
-        """The same, by the name that they had in 2.0."""
+        """Figures of the motion, by the name that they had in 2.0."""
         return self.candidate.figures
 
     @property
@@ -54,13 +54,13 @@ class MotionAnswer(Answer):
         return self.candidate.residual
 
     def with_candidate(self, candidate: JudgedMotion) -> Self:
-        """The same answer, whose motion is not evaluated again: this candidate is it."""
+        """Return this answer with a candidate as its motion, which is not evaluated again."""
         answer = self.with_entries()
         vars(answer)["candidate"] = candidate
         return answer
 
     def with_entries(self, **entries: Any) -> Self:
-        """The same motion with other entries that say nothing of it, as of the record."""
+        """Return this motion with other entries that say nothing of it, such as the record's."""
         answer: Any = self
         changed = dataclasses.replace(answer, **entries)
         fields = {entry.name for entry in dataclasses.fields(answer)}
@@ -69,7 +69,7 @@ class MotionAnswer(Answer):
         return changed
 
     def restated(self, **changes: Any) -> Self:
-        """The same answer with other entries of its record."""
+        """Return this answer with other entries of its record."""
         return self.with_entries(record=dataclasses.replace(self.record, **changes))
 
     def _content(self) -> dict[str, Any]:
@@ -84,7 +84,7 @@ class MotionAnswer(Answer):
 
     @classmethod
     def stated_by(cls, path: str | Path) -> dict[str, float]:
-        """What a file states of the figures of its motion, to be held against computed ones.
+        """Read the figures that a file states of its motion, to be held against computed ones.
 
         FileFormatError where it is no such file.
         """

@@ -1,4 +1,4 @@
-"""What a front weighs against each other: residual, energy, and peaks on the way."""
+"""Objectives that a front weighs against each other: residual, energy, and peaks on the way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a motion leaves on a plant that is not as it was modelled: one batch of fixed steps."""
+"""Residuals of a motion on a plant that is not as it was modelled: one batch of fixed steps."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ built without a search for common terms, which takes longer: see `MOST_STEPS_OF_
 
 @dataclass(frozen=True)
 class OffModel:
-    """What a motion leaves where its plant is off its model.
+    """Residuals of a motion whose plant is off its model.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def _of_zv(motion: JudgedMotion) -> float | None:
 
 
 def _largest(motion: JudgedMotion, name: str, shares: Sequence[float]) -> list[float]:
-    """What errors of one parameter leave [m], the larger of both signs of each."""
+    """Return the residuals by errors of one parameter [m], the larger of both signs of each."""
     rows = [[error] for share in shares for error in (share, -share)]
     return _residuals(motion, [name], rows).reshape(-1, 2).max(axis=1).tolist()
 

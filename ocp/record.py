@@ -1,4 +1,4 @@
-"""Where an answer comes from: what was asked, by what it was found, and how it was checked."""
+"""The record of an answer: what was asked, by what it was found, and how it was checked."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def number_of_starts(value: object) -> int:
 
 
 def number_of_points(value: object) -> int:
-    """How many points a front is to have as an int."""
+    """Return the number of points that a front is to have as an int."""
     return whole("points", value, 2, 10_000, "50 show a front, and each takes some solves")
 
 
@@ -148,7 +148,7 @@ class Verification:
 
     @property
     def agrees(self) -> bool:
-        """Whether the values count as verified: within `AGREEMENT`, or both at rest."""
+        """Return whether the values count as verified: within `AGREEMENT`, or both at rest."""
         residual = abs(self.fixed_step_residual - self.residual_difference)
         close = abs(self.residual_difference) <= AGREEMENT * residual + self.rest
         return self.energy_share <= AGREEMENT and close

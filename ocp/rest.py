@@ -1,4 +1,4 @@
-"""What counts as rest on arrival: of a small move less than of others, by one rule."""
+"""The rule for rest on arrival: a small move has to be stiller than others."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def rest_of(task: PointToPoint) -> float:
 
 
 def is_at_rest(residual: float, task: PointToPoint) -> bool:
-    """Whether a residual counts as rest on arrival, or as the state that is wanted then."""
+    """Return whether a residual counts as rest on arrival, or as the state that is wanted then."""
     return residual < rest_of(task)
 
 

@@ -83,7 +83,7 @@ def worst_of(candidate: JudgedMotion) -> JudgedMotion | None:
 
 
 def worst_case(candidate: JudgedMotion, ranges: Mapping[str, float]) -> JudgedMotion:
-    """The same within ranges of errors for a motion that has no profile, by CVODES alone."""
+    """Return the worst case within ranges of errors for a motion without a profile, by CVODES."""
 
     def residuals(errors: Array) -> Array:
         named_errors = [dict(zip(ranges, row)) for row in errors.tolist()]
@@ -165,7 +165,7 @@ def _grid(along: ArrayLike, ranges: int) -> Array:
 
 
 def _is_peak(values: Array) -> NDArray[np.bool_]:
-    """Where a value of a grid is no smaller than its neighbours along every side."""
+    """Return where a value of a grid is no smaller than its neighbours along every side."""
     peak = np.ones(values.shape, dtype=bool)
     for axis in range(values.ndim):
         peak &= np.diff(values, axis=axis, prepend=-np.inf) >= 0
@@ -193,7 +193,7 @@ class Sensitivity:
 
 
 def sensitivities(candidate: JudgedMotion) -> tuple[Sensitivity, ...]:
-    """By central differences of CVODES; the parameter that adds most vibration comes first."""
+    """Return sensitivities by central differences of CVODES, that with most vibration first."""
     task = candidate.task
     vibration = after_arrival(task)[0]
 
@@ -257,7 +257,7 @@ class Sweep:
 
     @property
     def open_ends(self) -> tuple[bool, bool]:
-        """Whether the range reaches the lower, the upper end of the sweep."""
+        """Return whether the range reaches the lower, the upper end of the sweep."""
         low, high = self.insensitivity or (0.0, 0.0)
         return bool(low <= self.errors[0]), bool(high >= self.errors[-1])
 
@@ -376,7 +376,7 @@ def _sweep(name: str, errors: Array, figures: Figures, tolerated: float) -> Swee
 
 
 def _crossing(errors: Array, excess: Array) -> float:
-    """Where the excess is first above 0, between two errors; the last error if it never is."""
+    """Return where the excess is first above 0, between two errors; the last error if nowhere."""
     above = np.flatnonzero(excess > 0)
     if not above.size:
         return float(errors[-1])

@@ -49,7 +49,7 @@ class Sample(NamedTuple):
 
     @property
     def tip_accelerations(self) -> Sequence[Expression]:
-        """Their second time derivatives [m/s^2]."""
+        """Second time derivatives of the tips' displacements [m/s^2]."""
         assert self.plant is not None
         return self.plant.tip_accelerations(self.path, self.W, self.dW, self.ddW)
 
@@ -71,7 +71,7 @@ class Sample(NamedTuple):
         return [value for value in motions if value is not None] + columns
 
     def with_values(self, values: Iterable[Expression]) -> Sample:
-        """The same of other `values`."""
+        """Return this sample with other `values`."""
         following = iter(values)
 
         def motion(joint: JointMotion) -> JointMotion:
@@ -115,7 +115,7 @@ def symbolic_sample(plant: Plant) -> Sample:
 
 
 def total(values: Sequence[Expression]) -> Expression:
-    """Their sum, which of one is itself: nothing is added that has to be computed."""
+    """Return the sum of values; of one it is the value itself, so nothing has to be computed."""
     first, *following = values
     for value in following:
         first = first + value

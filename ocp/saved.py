@@ -96,7 +96,7 @@ def _may_be_missing(value: Any) -> set[str]:
 
 
 def _has_something(value: Any, entry: dataclasses.Field[Any]) -> bool:
-    """Whether a field is always written, or says more than its default."""
+    """Return whether a field is always written, or says more than its default."""
     if "if_stated" not in entry.metadata:
         return True
     content = getattr(value, entry.name)
@@ -185,7 +185,7 @@ def _unknown(document: Any, known: Any) -> set[str]:
 
 
 def _known_here(kind: Any, entry: Any) -> Any:
-    """What msgspec does not know: plants, profiles and energies by their name, arrays."""
+    """Convert what msgspec does not know: plants, profiles and energies by their name, arrays."""
     if kind not in _FAMILIES:
         return np.array(msgspec.convert(entry, list[float]))
     if not isinstance(entry, dict) or "name" not in entry:
@@ -223,7 +223,7 @@ def _with_content(kind: type[Any], table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _as_meant(document: Any, kind: type[Any]) -> Any:
-    """What a file has of a value, by the `of_saved` of its class where that has changed since."""
+    """Return a file's value as its class reads it: by `of_saved` if that has changed since."""
     of_saved = getattr(kind, "of_saved", None)
     return document if of_saved is None else of_saved(document)
 
@@ -244,12 +244,12 @@ def _check_file(name: str, path: str, sha256: str) -> None:
 
 
 def _shown(digest: str) -> str:
-    """As much of a digest as a message shows."""
+    """Return as much of a digest as a message shows."""
     return digest[:12]
 
 
 def read_document(path: str | Path, kind: str) -> Any:
-    """What the JSON of a file says; FileFormatError where it is none."""
+    """Read the JSON of a file; FileFormatError where it is none."""
     content = read_bytes(path).removeprefix(BOM_UTF8)
     try:
         document = msgspec.json.decode(content)
@@ -271,12 +271,12 @@ def read_document(path: str | Path, kind: str) -> Any:
 
 
 def read_content(path: str | Path, kind: type[Answer]) -> dict[str, Any]:
-    """What the file of an answer holds beside format, version and checksum; both are checked."""
+    """Read an answer's file but for format, version and checksum, which are checked."""
     return _content_of(read_document(path, kind.kind), path, kind)
 
 
 def _content_of(document: Any, path: str | Path, kind: type[Answer]) -> dict[str, Any]:
-    """What a document holds beside format, version and checksum; both are checked."""
+    """Return a document but for format, version and checksum, which are checked."""
     content = dict(document) if isinstance(document, dict) else {}
     content.pop(CHECKSUM, None)
     stated_format = content.pop("format", None)
@@ -326,7 +326,7 @@ def _digest(canonical: str) -> str:
 
 @contextmanager
 def refusals(path: str | Path, kind: str) -> Iterator[None]:
-    """What is wrong with the entries of a file, as a FileFormatError that names it."""
+    """Turn what is wrong with the entries of a file into a FileFormatError that names it."""
     try:
         yield
     except (
@@ -338,7 +338,7 @@ def refusals(path: str | Path, kind: str) -> Iterator[None]:
 
 
 class Answer:
-    """What was found, with a file of its attributes: JSON, versioned, never executed.
+    """An answer, with a file of its attributes: JSON, versioned, never executed.
 
     A subclass is a dataclass. A sealed file has a checksum of all other entries, and is refused
     without. It tells changes of what no evaluation tells: candidates, iterations, time, method.
@@ -360,7 +360,7 @@ class Answer:
         write_whole(path, self._text() + "\n")
 
     def _text(self) -> str:
-        """What its file says."""
+        """Return the text of the file."""
         texts = texts_of(self._document())
         if not self.sealed:
             return texts.indented
@@ -371,7 +371,7 @@ class Answer:
         return {"format": f"quietarm-{self.kind}", "version": self.version, **self._content()}
 
     def _content(self) -> dict[str, Any]:
-        """What its file holds beside format and version."""
+        """Return what the file holds beside format and version."""
         return plain(self)
 
     @classmethod

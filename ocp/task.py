@@ -1,4 +1,4 @@
-"""What is asked: a move in a given time within limits; and in what two tasks differ."""
+"""The task: a move in a given time within limits; and the differences of two tasks."""
 
 from __future__ import annotations
 
@@ -438,12 +438,12 @@ class PointToPoint:
 
     @property
     def smallness(self) -> float:
-        """What absolute tolerances are multiplied by: 1, and less for a move below 1 mm or mrad."""
+        """Factor of absolute tolerances: 1, and less for a move below 1 mm or mrad."""
         return min(1.0, abs(self.span) / _SMALL_MOVE)
 
     @property
     def ends(self) -> str:
-        """From where to where in words: "0 to 30 deg", of joints on a path places on it."""
+        """Start and target in words: "0 to 30 deg", of joints on a path places on it."""
         if self.plant.has_path:
             whole = (self.start, self.target) == (0.0, 1.0)
             return (
@@ -605,7 +605,7 @@ def _merged(
 
 
 def _is_default(window: object) -> bool:
-    """Whether a residual window was not given: it was worked out for another task, or for none."""
+    """Return whether a residual window was not given, but worked out for another task, or none."""
     return window is None or isinstance(window, DefaultWindow)
 
 
@@ -668,7 +668,7 @@ def task_difference(task: PointToPoint, reference: PointToPoint) -> str:
 
 
 def _stated(task: PointToPoint) -> dict[str, object]:
-    """All that a task has, by words; states are numbers, given or not."""
+    """Return all that a task has, by words; states are numbers, given or not."""
     # Fields that are told in another way.
     apart = "plant", "initial", "final", "energy", "uncertainty", "bounds"
     plain = (entry.name for entry in fields(task) if entry.name not in apart)

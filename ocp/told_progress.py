@@ -1,4 +1,4 @@
-"""What is told while long work goes on."""
+"""Progress that is told while long work goes on."""
 
 from __future__ import annotations
 

@@ -68,34 +68,34 @@ class ScaledModes(Plant):
         return self.plant.torque(joint, W, dW, ddW)
 
     def tip_displacements(self, W: Modes) -> Sequence[Expression]:
-        """Those of the plant [m]."""
+        """Return the plant's tip displacements [m]."""
         return self.plant.tip_displacements(W)
 
     def joints(self, path: JointMotion) -> Sequence[JointMotion]:
-        """Those of the plant."""
+        """Return the plant's joints."""
         return self.plant.joints(path)
 
     def torques(self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Sequence[Expression]:
-        """Those of the plant [N m]."""
+        """Return the plant's torques [N m]."""
         return self.plant.torques(path, W, dW, ddW)
 
     def tips_at(self, path: JointMotion, W: Modes) -> Sequence[Expression]:
-        """Those of the plant [m]."""
+        """Return the plant's tips at a place [m]."""
         return self.plant.tips_at(path, W)
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
-        """Those of the plant [m/s]."""
+        """Return the plant's tip speeds [m/s]."""
         return self.plant.tip_speeds(path, W, dW)
 
     def tip_accelerations(
         self, path: JointMotion, W: Modes, dW: Modes, ddW: Modes
     ) -> Sequence[Expression]:
-        """Those of the plant [m/s^2]."""
+        """Return the plant's tip accelerations [m/s^2]."""
         return self.plant.tip_accelerations(path, W, dW, ddW)
 
     @property
     def tip_lines(self) -> np.ndarray | None:
-        """Those of the plant."""
+        """Lines of the plant's tips."""
         return self.plant.tip_lines
 
     @property
@@ -106,12 +106,12 @@ class ScaledModes(Plant):
     def tip_deviations(
         self, places: np.ndarray, tips: np.ndarray, target: float
     ) -> np.ndarray | None:
-        """Those of the plant [m]."""
+        """Return the deviations of the plant's tips [m]."""
         return self.plant.tip_deviations(places, tips, target)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """Those of the plant."""
+        """Names of the plant's joints."""
         return self.plant.joint_names
 
 

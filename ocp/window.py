@@ -1,4 +1,4 @@
-"""How long after arrival the residual is measured, where nobody says it."""
+"""The time after arrival in which the residual is measured, if nobody says it."""
 
 from __future__ import annotations
 

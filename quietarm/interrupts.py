@@ -50,7 +50,7 @@ _MAIN = threading.main_thread().ident
 
 
 class _State:
-    """What the handler knows.
+    """State of the handler.
 
     Each change is one assignment, which no signal divides.
     """
@@ -99,7 +99,7 @@ def interruptible(work: Callable[P, R]) -> Callable[P, R]:
 
 
 def is_interruptible(work: object) -> bool:
-    """Whether a function is marked so."""
+    """Return whether a function is marked as interruptible."""
     return getattr(work, "__code__", None) in _operations
 
 
@@ -239,7 +239,7 @@ def as_command(
 
 
 def exit_status_of(stop: BaseException) -> int:
-    """By the shell's convention: 128 and the number of the signal, which of Ctrl-C is 2."""
+    """Return the shell's exit status: 128 and the number of the signal, which of Ctrl-C is 2."""
     number = next(iter(stop.args), signal.SIGINT)
     return 128 + (number if isinstance(number, int) else signal.SIGINT)
 
@@ -299,13 +299,13 @@ def _frame_outside(frame: FrameType | None) -> tuple[FrameType | None, list[Fram
 
 
 def _loses(frame: FrameType) -> bool:
-    """Whether what is raised in a frame is lost."""
+    """Return whether what is raised in a frame is lost."""
     is_named = frame.f_code.co_name == "__del__" or frame.f_code in _doors
     return is_named or _module(frame).partition(".")[0] in _LOSING_MODULES
 
 
 def _breaks(frame: FrameType) -> bool:
-    """Whether something half done stays when a frame ends early."""
+    """Return whether something half done stays when a frame ends early."""
     return frame.f_code.co_name in _HALVES or _module(frame) in _IMPORTS
 
 
@@ -319,7 +319,7 @@ def _is_impatient() -> bool:
 
 
 def _evaluates(frame: FrameType) -> bool:
-    """Whether CasADi evaluates a function, be it with callbacks."""
+    """Return whether CasADi evaluates a function, be it with callbacks."""
     if frame.f_code in _doors:
         return True
     return _module(frame).startswith("casadi") and frame.f_code.co_name in _EVALUATIONS

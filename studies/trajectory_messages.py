@@ -225,12 +225,12 @@ _AT_START = 0.01
 
 
 def _words_of(residual: float) -> str:
-    """What is left, a thousandth of a millimetre at least."""
+    """Return what is left, a thousandth of a millimetre at least."""
     return tip_words(max(residual, 1e-6), "m")
 
 
 def _own_duration(table: JointTable) -> float | None:
-    """How long a message takes [s]; None of one whose times do not increase."""
+    """Return the duration of a message [s]; None for one whose times do not increase."""
     times = table.times
     if times is None or not bool(np.all(np.diff(times) > 0)):
         return None

@@ -1,4 +1,4 @@
-"""What the tests of every package share."""
+"""Fixtures and checks that the tests of every package share."""
 
 import gc
 import os
@@ -79,7 +79,7 @@ def _plants_of_this_test_are_forgotten(monkeypatch):
 
 @pytest.fixture
 def what_is_made_up_is_forgotten(monkeypatch, _plants_of_this_test_are_forgotten):
-    """What a test defines is known by name during that test only."""
+    """Forget what a test defines: it is known by name during that test only."""
     before = set(classes_with_a_name())
     quantities, figures = {*QUANTITIES}, {*FIGURES}
     monkeypatch.setattr(plant_file, "_module_of", dict(plant_file._module_of))

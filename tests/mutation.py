@@ -174,7 +174,7 @@ def in_a_process(work: Callable[[], int]) -> int:
 
 
 def tested(module: str, source: str) -> int:
-    """What pytest says of a module's tests, with its source replaced."""
+    """Return pytest's status of a module's tests, with its source replaced."""
     sys.meta_path.insert(0, _Changed(module, source))
     os.chdir(ROOT)
     quiet = ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # hypothesis is here already

@@ -83,7 +83,7 @@ DOORS = {
 
 @pytest.fixture(scope="module")
 def made():
-    """What has methods that take numbers."""
+    """Return what has methods that take numbers."""
     return SimpleNamespace(
         plan=qa.evaluate_coefficients(TASK, [0.1, 0.1]),
         evaluator=Evaluator(TASK, TWO, 60),

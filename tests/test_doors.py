@@ -45,7 +45,7 @@ def _kind_of(annotation):
 
 
 def _public():
-    """What every package, and every room of `studies` that users call, gives by name."""
+    """Return what every package, and every room of `studies` that users call, gives by name."""
     homes = [qa.models, qa.ocp, qa.metaheuristics, qa.pictures, qa.compare, qa.bench]
     homes += [qa.machine.identify, qa.machine.learn, qa.studies.sweep]
     return {name: getattr(home, name) for home in homes for name in dir(home)}

@@ -109,7 +109,7 @@ def test_what_swallows_it_ends_with_it():
 
 
 class _Thing:
-    """Of which there are weak references."""
+    """Thing of which there are weak references."""
 
 
 def test_a_callback_of_a_weak_reference_does_not_lose_it():

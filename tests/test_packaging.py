@@ -1,4 +1,4 @@
-"""What is shipped: versions, type information, pinned requirements, nothing of one machine."""
+"""The shipped package: versions, type information, pinned requirements, nothing of one machine."""
 
 import lzma
 import subprocess

@@ -70,12 +70,12 @@ class Film:
 
     @property
     def frames(self) -> int:
-        """How many pictures it has."""
+        """Number of pictures."""
         return len(self.structures[0].times)
 
     @property
     def seconds(self) -> float:
-        """How long it takes [s]."""
+        """Playing time of the film [s]."""
         return self.frames / self.rate
 
     @interruptible
@@ -92,7 +92,7 @@ class Film:
         write_whole(path, self.content(name, report))
 
     def content(self, name: str, report: Callable[[int, int], object]) -> bytes:
-        """What a file of a kind holds, gif or mp4; ValueError where there is no ffmpeg."""
+        """Return the content of a gif or mp4 file; ValueError if ffmpeg is missing for an mp4."""
         if name == "mp4" and not FFMpegWriter.isAvailable():
             raise ValueError(
                 "an mp4 needs the program ffmpeg, which is not found here; install it, or make a "
@@ -113,7 +113,7 @@ class Film:
             raise unwritable(Path(tempfile.gettempdir()) / f"film.{name}", error) from error
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: a gif, so that it needs no server."""
+        """Return the film for a notebook: a gif, so that it needs no server."""
         content = base64.b64encode(self.content("gif", lambda done, total: None)).decode()
         return f'<img alt="structures in motion" src="data:image/gif;base64,{content}"/>'
 
@@ -253,7 +253,7 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
 
 
 def _heading(structure: Structure, same: bool) -> str:
-    """What is above all panels: the move, where it is one, and until when residuals are seen."""
+    """Return the heading above all panels: the move, if it is one, and its residual's window."""
     if not same:
         return "several moves on one clock"
     task = structure.line.plan.task

@@ -23,7 +23,7 @@ WEIGHT = 1e-3
 
 @dataclass(frozen=True)
 class SetPointLearning:
-    """What a model says of changes of a set point.
+    """Learning of a set point, by what a model says of its changes.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class SetPointLearning:
         return bumps @ kept
 
     def _effects(self, shapes: Array, rows: int) -> Array:
-        """What each change does to the tool after the end (rows, shapes)."""
+        """Return what each change does to the tool after the end (rows, shapes)."""
         omega = 2 * np.pi * self.frequency
         system = ([-1.0], [1.0, 2 * self.damping * omega, omega**2])
         tops, bottom, _ = cont2discrete(system, 1 / self.rate, "foh")

@@ -1,4 +1,4 @@
-"""What the benchmarks share: cold starts, timing, tables that fit a screen."""
+"""Tools that the benchmarks share: cold starts, timing, tables that fit a screen."""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ def exact_front(
 
 
 def _keeps_limits(front: Front, point: FrontPoint) -> bool:
-    """Whether a point keeps the task's limits by CVODES, without the room that a plan has."""
+    """Return whether a point keeps the limits by CVODES, without the room that a plan has."""
     if not front.task.limits:
         return True
     candidate = JudgedMotion.of_profile(front.task.certain, front.profile, point.coefficients)

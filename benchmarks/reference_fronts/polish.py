@@ -45,7 +45,7 @@ class FineProgram(Program):
 
     @cached_property
     def tip_rows(self) -> list[NDArray[np.float64]]:
-        """As of a `Program`, at `RADIANS`."""
+        """Rows of the tip as of a `Program`, at `RADIANS`."""
         return [vibration.rows_every(RADIANS) for vibration in after_arrival(self.task)]
 
 
@@ -132,7 +132,7 @@ def _judged(program: Program, outcome: Certified) -> FrontPoint | None:
 
 
 def _within(point: FrontPoint, known: FrontPoint) -> bool:
-    """Whether a motion's residual is that of a point, but for rounding, or smaller."""
+    """Return whether a motion's residual is that of a point, but for rounding, or smaller."""
     return point.residual <= max(known.residual * (1 + 1e-9), STILL)
 
 

@@ -173,7 +173,7 @@ class Rival:
         return float(np.abs(rises).sum()), np.sign(rises) @ by_a
 
     def displacements(self, motion: Motion) -> tuple[Array, Array]:
-        """Of every mode of every scenario the tip on arrival and at its next turn [m], and slopes.
+        """Return every mode's tip on arrival and at its next turn by scenario [m], and slopes.
 
         The largest of them is the residual.
         """
@@ -259,7 +259,7 @@ def _where_they_turn(a: Array, b: Array, c: Array) -> list[int]:
 
 
 def _hermite(at: float, h: float) -> tuple[float, float, float, float]:
-    """What values and slopes at both ends of a step count for within it, from 0 to 1."""
+    """Return the weights of values and slopes at both ends of a step within it, from 0 to 1."""
     return (
         (1 + 2 * at) * (1 - at) ** 2,
         h * at * (1 - at) ** 2,
@@ -278,7 +278,7 @@ class _Vibration:
 
     @classmethod
     def of_mode(cls, plant: Any, mode: int, angle: float) -> _Vibration:
-        """Of a plant whose modes do not act on each other once the joint is at rest."""
+        """Make the vibration of a mode on which no other acts once the joint is at rest."""
         rest = JointMotion(angle, 0.0, 0.0)
         unit = [float(mode == i) for i in range(plant.modes)]
         zero = [0.0] * plant.modes
@@ -301,7 +301,7 @@ class _Vibration:
         return float(np.pi / self.turning)
 
     def rows(self, state: Array) -> tuple[Array, Array]:
-        """What amplitude and rate on arrival count for in the tip there, and at its next turn."""
+        """Return the weights of amplitude and rate on arrival in the tip there and at its turn."""
         amplitude, rate = state
         angle = np.arctan2(rate * self.turning, self.k * amplitude + self.d / 2 * rate) % np.pi
         after = angle / self.turning

@@ -46,7 +46,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Certificate:
-    """What is known of a reference front.
+    """Certificate of a reference front.
 
     The largest differences from what CVODES gives, of the energies as a share and of the residuals
     [m]; how many points the rival solved from themselves, and from how many random starts; the
@@ -66,7 +66,7 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether what was found is within the tolerances."""
+        """Return whether what was found is within the tolerances."""
         same = self.energy_difference <= SAME_ENERGY and self.residual_difference <= SAME_RESIDUAL
         return same and self.gained <= BEATEN
 

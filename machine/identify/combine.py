@@ -31,7 +31,7 @@ class Group(NamedTuple):
 
 
 class Combined(NamedTuple):
-    """What parts tell together.
+    """Parameters that parts identify together, and those that they leave uncertain.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ def combine(names: Sequence[str], parts: Sequence[Part]) -> Combined:
 
 
 def _agree(parts: Sequence[Part], name: str, value: float) -> bool:
-    """Whether all parts by themselves tell about one positive value of a parameter."""
+    """Return whether all parts by themselves tell about one positive value of a parameter."""
     apart = 0.5  # share of the value that parts may differ, or be unsure of
     values = np.array([part.values[name] for part in parts])
     deviations = np.array([part.deviations[name] for part in parts])
@@ -87,7 +87,7 @@ def _agree(parts: Sequence[Part], name: str, value: float) -> bool:
 
 
 def groups_of(parts: Sequence[Part], name: str) -> list[Group]:
-    """What the parts of each recording say of a parameter, recordings in the order of the parts."""
+    """Group the parts' values of a parameter by recording, in the order of the parts."""
     recordings = dict.fromkeys(part.recording for part in parts)
     groups = list[Group]()
     for recording in recordings:

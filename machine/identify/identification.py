@@ -141,7 +141,7 @@ def identify(
 
 
 def _recorded(recordings: Sequence[Recording], parts: Sequence[Part]) -> Recorded | None:
-    """Held where the joint's angle was recorded, at rest or as an input of every fit."""
+    """Return "held" if the joint's angle was recorded, at rest or as an input of every fit."""
     known = all(recording.angle is not None for recording in recordings)
     return "held" if known and all(part.cause != "hub" for part in parts) else None
 
@@ -173,7 +173,7 @@ def sought(
 def curve_of(
     machine: Identified, part: Part, recordings: Sequence[Recording]
 ) -> tuple[SwingModel, Array]:
-    """What was fitted in a part, and the signals that it was met by (rows, signals)."""
+    """Return the model fitted in a part, and its signals (rows, signals)."""
     named = [recording for recording in recordings if recording.name == part.recording]
     (recording, *_), _ = without_glitches(named)
     fitter = PartFitter(machine.plant, list(part.values), recording, 1.0)
@@ -200,7 +200,7 @@ def _refuse_other_frequency(fitters: Sequence[PartFitter]) -> None:
 
 
 def _by_recording(reasons: dict[str, str]) -> str:
-    """Why each recording is left out, in a line."""
+    """Say why each recording is left out, in a line."""
     return "; ".join(f"{name}: {why}" for name, why in reasons.items())
 
 
@@ -271,7 +271,7 @@ def _inside(recording: Recording, begin: float, end: float) -> slice:
 
 
 def _is_read(name: str, parts: Sequence[Part]) -> bool:
-    """Whether a part is of the recording of a name."""
+    """Return whether one of the parts is of the recording of a name."""
     return any(part.recording == name for part in parts)
 
 
@@ -301,7 +301,7 @@ def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> l
 
 
 def _refuse_undeclared(plant: Plant, names: Iterable[str]) -> None:
-    """ValueError where a name is that of a damping ratio, and its kind is not declared.
+    """Refuse the name of a damping ratio whose kind is not declared.
 
     Version 2.0.0 took it for one by its name.
     """
@@ -350,7 +350,7 @@ def _worth_pooling(plant: Plant, parts: Sequence[Part]) -> tuple[list[Part], dic
 
 
 def _drifts(plant: Plant, combined: Combined, parts: Sequence[Part]) -> list[str]:
-    """Which of the identified parameters drift from one recording to the next, in words."""
+    """Say which of the identified parameters drift from one recording to the next."""
     recordings = {part.recording for part in parts}
     what = "recordings" if len(recordings) > 1 else "ring-downs"
     return [

@@ -64,7 +64,7 @@ class Estimate:
 
     @property
     def varies(self) -> bool:
-        """Whether the parts differ by more than their own uncertainty, twice and more."""
+        """Return whether the parts differ by more than their own uncertainty, twice and more."""
         low, high = self.widest
         return high - low > 2 * (self.high - self.low)
 
@@ -122,7 +122,7 @@ class Part:
 
     @property
     def unexplained(self) -> float:
-        """What the fit leaves beside the noise, as a share of the vibration."""
+        """Misfit beside the noise, as a share of the vibration."""
         return float(max(self.misfit**2 - self.noise**2, 0.0)) ** 0.5
 
     @property
@@ -180,7 +180,7 @@ class Identified(Answer):
         return tuple(name for name in self.plant.measured if name not in told)
 
     def with_given(self, plant: Plant, names: Iterable[str]) -> Identified:
-        """The same, with values of a plant in place of those that are told but roughly."""
+        """Return this machine with a plant's values in place of those that are told but roughly."""
         given = {name: getattr(plant, name) for name in names if name in self.rough}
         rough = {name: value for name, value in self.rough.items() if name not in given}
         return replace(self, plant=replace(self.plant, **given), rough=rough)
@@ -256,7 +256,7 @@ class Identified(Answer):
 
 
 def in_torque_alone(plant: Plant, name: str) -> bool:
-    """Whether a parameter shows in the torque, and neither in the modes nor at the tips."""
+    """Return whether a parameter shows in the torque, and neither in the modes nor at the tips."""
     symbol = ca.SX.sym(name)
     joint = JointMotion(*(ca.SX.sym("joint") for _ in range(3)))
     W = [ca.SX.sym("W") for _ in range(plant.modes)]
@@ -269,17 +269,17 @@ def in_torque_alone(plant: Plant, name: str) -> bool:
 
 
 def is_frequency(plant: Plant, name: str) -> bool:
-    """Whether a parameter is the frequency of a mode."""
+    """Return whether a parameter is the frequency of a mode."""
     return plant.parameter_kinds()[name] == FREQUENCY
 
 
 def is_modal(plant: Plant, name: str) -> bool:
-    """Whether a parameter is the frequency or the damping ratio of a mode."""
+    """Return whether a parameter is the frequency or the damping ratio of a mode."""
     return is_frequency(plant, name) or is_damping(plant, name)
 
 
 def is_damping(plant: Plant, name: str) -> bool:
-    """Whether a parameter is the damping ratio of a mode."""
+    """Return whether a parameter is the damping ratio of a mode."""
     return plant.parameter_kinds()[name] == DAMPING
 
 
@@ -291,7 +291,7 @@ def values_of(plant: Plant, names: Sequence[str]) -> Array:
 def bounds_of(
     plant: Plant, names: Sequence[str], start: Array, seconds: float
 ) -> tuple[Array, Array]:
-    """How far parameters may go from a start: dampings a little below 0, as an estimate may.
+    """Return bounds of parameters about a start: dampings go a little below 0, as estimates may.
 
     No swing of so many seconds grows beyond what numbers can hold.
     """

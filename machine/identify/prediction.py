@@ -1,4 +1,4 @@
-"""Whether an identified machine predicts a recording that it was not identified from."""
+"""Test whether an identified machine predicts a recording that it was not identified from."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Prediction:
-    """How much of a recording's swing a machine predicts.
+    """The share of a recording's swing that a machine predicts.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Prediction:
 
 @takes(plant=Plant)
 def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
-    """How much of each ring-down of recordings a plant predicts, with nothing of it fitted.
+    """Return how much of each ring-down of recordings a plant predicts, with nothing of it fitted.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def predict(plant: Plant, recordings: Sequence[Recording]) -> list[Prediction]:
 
 
 def _why(fitter: PartFitter, part: Part, p: Array) -> str:
-    """What tells a ring-down apart from a machine's with some parameters: the likeliest."""
+    """Name the likeliest cause why a ring-down is not that of a machine with some parameters."""
     same = 0.01  # share of a frequency, which in seven periods is a phase of 25 degrees
     alike = 1.5  # times a damping
     frequency = fitter.frequency_of(part.vector)
@@ -121,7 +121,7 @@ def _why(fitter: PartFitter, part: Part, p: Array) -> str:
 
 
 def _shares(model: SwingModel, p: Array, period: float) -> list[tuple[float, float]]:
-    """How much of the swing is predicted, and where the predicted periods begin."""
+    """Return the predicted shares of the swing, each with where its predicted periods begin."""
     periods_known = 2.0  # from which a swing's state is known
     periods_ahead = 5.0
     time = model.time

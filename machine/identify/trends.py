@@ -1,4 +1,4 @@
-"""Whether values that follow one another have a trend, as of a machine that warms up or wears."""
+"""Test values in order for a trend, such as that of a machine that warms up or wears."""
 
 from __future__ import annotations
 
@@ -80,6 +80,6 @@ def trend_of(values: Array, variances: Array, chance: float) -> Trend | None:
 
 
 def _in_order(values: Array) -> bool:
-    """Whether five values or more only rise or only fall: chance does so in 1.7 % at most."""
+    """Return whether five values or more only rise or fall: chance does so in 1.7 % at most."""
     steps = np.diff(values)
     return len(values) >= 5 and bool((steps > 0).all() or (steps < 0).all())

@@ -1,4 +1,4 @@
-"""What a machine left of a plan's executed move, and the next plan that leaves less."""
+"""Learn from a plan's executed move what the machine left, and plan the next, which leaves less."""
 
 from quietarm.loading import attach
 

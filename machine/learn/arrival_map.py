@@ -1,4 +1,4 @@
-"""What a machine makes of the arrival states that it is told: a share of each, and a deviation.
+"""The map from the arrival states that a machine is told to its swing: a share and a deviation.
 
 Of a linear machine a mode's swing at arrival is what the plant says of the set points, times one
 complex number (the servo delays them, the tip moves a little more or less than the plant says),
@@ -32,7 +32,7 @@ _OF_LARGE_SWINGS = 0.04
 
 @dataclass(frozen=True, eq=False)
 class ArrivalMap:
-    """How one mode swings at arrival by what the plant says of the set points.
+    """The map from what the plant says of the set points to one mode's swing at arrival.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class ArrivalMap:
         return float(np.sqrt((row @ self.covariance @ row.conj()).real))
 
     def told_for(self, swing: complex) -> complex:
-        """What the plant should say of set points, so that this swing is left."""
+        """Return what the plant should say of set points, so that this swing is left."""
         return (swing - self.deviation) / self.share
 
 
@@ -90,7 +90,7 @@ def faster_by(
     size: float,
     share: float | None = None,
 ) -> float:
-    """By what share a mode is faster during moves than after them, as their arrivals tell.
+    """Return by what share a mode is faster during moves than after, as their arrivals tell.
 
     Arguments are those of `map_of`, and `slope`, what the plant says more by a share of 1.
     """

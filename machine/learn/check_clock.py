@@ -1,4 +1,4 @@
-"""Whether the times of a recording can be those of a plan's move: length, rate and unit."""
+"""Check that a recording's times can be those of a plan's move: length, rate and unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the columns of a recording are what they were said to be: a joint rests after a move."""
+"""Check that a recording's columns are what they were said to be: a joint rests after a move."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def refuse_constant(name: str, columns: Mapping[str, Array | None]) -> None:
 
 
 def check_columns(plan: Plan, recording: Recording, arrival: float) -> None:
-    """ValueError where what was given as the joint swings after arrival, as a tip does."""
+    """Refuse what was given as the joint if it swings after arrival, as a tip does."""
     if recording.angle is None:
         return
     task = plan.task

@@ -1,4 +1,4 @@
-"""Whether a recording is of a plan's own move, or of another that goes about the same way.
+"""Check that a recording is of a plan's own move, not of another that goes about the same way.
 
 The start of a move is found by what is alike in all moves of one task. Once the frequency of the
 swing is known as well, the plan explains nearly all of its own move's recording, and clearly less
@@ -117,7 +117,7 @@ def _check_size(plan: Plan, recording: Recording, signal: str, sizes: Array) -> 
 
 
 def is_cut(values: Array) -> bool:
-    """Whether a signal stays at its limit for a good part."""
+    """Return whether a signal stays at its limit for a good part."""
     much = 0.05
     return bool(saturated(values[:, None]).mean() > much)
 

@@ -1,4 +1,4 @@
-"""Whether what a recording of one joint shows is as large as its plan's move can make it."""
+"""Check that what a recording of one joint shows is as large as its plan's move can make it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _MOST_TORQUE = 30.0
 
 
 def check_size(plan: Plan, recording: Recording, start: Start) -> str:
-    """What is doubted of a torque's unit, in words; empty where it is as large as the plan's.
+    """Say what is doubted of a torque's unit; nothing where it is as large as the plan's.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _is_linear(plan: Plan) -> bool:
 
 
 def _is_too_far(plan: Plan, recording: Recording, start: Start, went: float, swing: float) -> bool:
-    """Whether a tip goes much farther than its joint takes it; of one that turns, its lever."""
+    """Check that a tip goes no farther than its joint takes it; of one that turns, by its lever."""
     span = abs(plan.task.span)
     if _is_linear(plan):
         return went > _MOST_WAYS * (span + 2 * swing)

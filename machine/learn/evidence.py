@@ -1,4 +1,4 @@
-"""What all moves of a plan's history together tell of a machine: its model, then its arrivals."""
+"""Evidence of a machine from all moves of a plan's history: its model, then its arrivals."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _LEAST_CHANGE_OF_DAMPING = 0.2
 
 @dataclass(frozen=True)
 class ReadMove:
-    """When a move began in a recording [s], when it ended, and what swung after it.
+    """A move in a recording: when it began [s], when it ended, and what swung after it.
 
     Without a tip that follows from the joint's motion.
     """
@@ -48,11 +48,11 @@ class ReadMove:
 
     @property
     def by_joint(self) -> bool:
-        """Whether no tip was recorded."""
+        """Return whether no tip was recorded."""
         return is_by_joint(self.recording)
 
     def on(self, plant: Plant, place: float) -> ReadMove:
-        """The same by another plant's frequencies."""
+        """Return this move as read by another plant's frequencies."""
         if not self.by_joint:
             return self
         part = self.after.part or Part(self.recording.name, self.start, self.arrival)
@@ -61,7 +61,7 @@ class ReadMove:
 
 
 def is_by_joint(recording: Recording) -> bool:
-    """Whether a recording has no tip, so that its swing follows from the joint."""
+    """Return whether a recording has no tip, so that its swing follows from the joint."""
     return recording.tip is None and recording.acceleration is None
 
 
@@ -75,13 +75,13 @@ def motion_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> JudgedMot
 
 
 def told_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> ComplexArray:
-    """What a plant says of the set points of an executed move: each mode's swing at arrival."""
+    """Return each mode's swing at arrival by a plant, from the set points of an executed move."""
     motion = motion_of(move, task, plant)
     return TipModes(plant, move.move[1]).amplitudes(motion.arrival[0])
 
 
 def evidence_of(plan: Plan, read: Sequence[ReadMove]) -> Evidence:
-    """What the moves of a plan's history and recordings of the last one tell."""
+    """Combine the moves of a plan's history and recordings of the last one."""
     return Evidence(plan, history_with(plan, [one.after.measured for one in read]), read)
 
 
@@ -110,7 +110,7 @@ def _same_motion(first: ExecutedMove, second: ExecutedMove) -> bool:
 
 
 class Evidence:
-    """What all moves together tell of a machine.
+    """Evidence that all moves together give of a machine.
 
     Parameters
     ----------
@@ -130,19 +130,19 @@ class Evidence:
 
     @property
     def by_joint(self) -> bool:
-        """Whether no tip was recorded."""
+        """Return whether no tip was recorded."""
         return all(one.by_joint for one in self._read)
 
     # The model
 
     @property
     def frequencies(self) -> dict[str, tuple[float, float]]:
-        """Of modes that are no parameters [Hz]: the plan's, and those of the moves; here none."""
+        """Frequencies of modes that are no parameters, as planned and as told [Hz]: none here."""
         return {}
 
     @cached_property
     def _parts(self) -> list[Part]:
-        """What each recording of the history tells of the plant's parameters."""
+        """Parts by which each recording of the history tells the plant's parameters."""
         read = {part.recording: part for one in self._read if (part := one.after.part)}
         parts = list[Part]()
         for number, move in enumerate(self.history.moves, start=1):
@@ -169,9 +169,9 @@ class Evidence:
 
     @cached_property
     def _swung(self) -> dict[str, float]:
-        """How far the tip swung after each recording's move [m], by its part's recording.
+        """Swing of the tip after each recording's move [m], by its part's recording.
 
-        The same of all where the frequency follows from a torque, during the move.
+        All are 1 where the frequency follows from a torque, during the move.
         """
         return {
             _name_of(number, one): 1.0 if self.by_joint else sum(s.amplitude for s in one.swings)
@@ -196,7 +196,7 @@ class Evidence:
         return {name: (getattr(plant, name), value) for name, value in moving.items()}
 
     def _faster_by(self, plant: Plant, rates: Sequence[str]) -> float:
-        """By what share the slowest mode is faster during the moves than after them."""
+        """Share by which the slowest mode is faster during the moves than after them."""
         step = 1e-3
         faster = replace(plant, **{name: (1 + step) * getattr(plant, name) for name in rates})
         told = self._told_by(plant)
@@ -230,7 +230,7 @@ class Evidence:
         return changed if self._explains(changed) else {}
 
     def _explains(self, changed: dict[str, tuple[float, float]]) -> bool:
-        """Whether less of the last move is left to explain with what is changed than without.
+        """Return whether what is changed leaves less of the last move to explain.
 
         A small swing may show another frequency that the move does not have.
         """
@@ -285,16 +285,16 @@ class Evidence:
 
     @cached_property
     def _told(self) -> ComplexArray:
-        """What the plant with what is changed says of the set points of each move."""
+        """Swing that the plant with what is changed says of the set points of each move."""
         return self._told_by(self.plant)
 
     def _told_by(self, plant: Plant) -> ComplexArray:
-        """What a plant says of the set points of each move (moves, modes)."""
+        """Return the swing that a plant says of the set points of each move (moves, modes)."""
         return np.stack([told_of(move, self._plan.task, plant) for move in self.history.moves])
 
     @lru_cache(maxsize=4)  # noqa: B019  # it lives as long as the evidence
     def seen_share(self, plant: Plant) -> float | None:
-        """How much of a plant's swing the tip shows during the move; None where it is not seen.
+        """Return the share of a plant's swing that the tip shows during the move; None if unseen.
 
         1 where the swing is what the plant makes of the joint's motion.
         """
@@ -308,7 +308,7 @@ class Evidence:
 
     @cached_property
     def _swings(self) -> list[ComplexArray]:
-        """What was measured of each move (recordings, modes)."""
+        """Measured swings of each move (recordings, modes)."""
         return [
             np.array([[s.complex_amplitude for s in one.swings] for one in move.measured])
             for move in self.history.moves
@@ -337,7 +337,7 @@ class Evidence:
 
     @cached_property
     def _scatter(self) -> Array | None:
-        """The same from recording to recording of one move, by mode; None where each has one."""
+        """Scatter of swings between recordings of one move, by mode; None if each move has one."""
         repeated = [swings for swings in self._swings if len(swings) > 1]
         if not repeated:
             return None
@@ -360,7 +360,7 @@ class Evidence:
 
     @cached_property
     def maps(self) -> list[ArrivalMap]:
-        """How each mode swings at arrival by what the plant says of set points."""
+        """Map of each mode from what the plant says of set points to its swing at arrival."""
         share = self.seen_share(self.plant)
         # what earlier moves left by the joint was computed with another frequency
         rows = slice(-1, None) if self.by_joint else slice(None)
@@ -372,7 +372,7 @@ class Evidence:
 
     @cached_property
     def _again(self) -> ComplexArray:
-        """What the last move would leave if it were executed again, beside what was wanted."""
+        """Swing that the last move would leave if executed again, beside what was wanted."""
         return np.array([m.swing(t) for m, t in zip(self.maps, self._told[-1])]) - self._wanted
 
     @cached_property
@@ -387,12 +387,12 @@ class Evidence:
         return power / (power + 2 * float((unsure**2).sum()))
 
     def told_next(self, step: float) -> ComplexArray:
-        """What the plant is to say of the next set points, by mode."""
+        """Return what the plant is to say of the next set points, by mode."""
         aim = self._wanted + (1 - step) * self._again
         return np.array([m.told_for(swing) for m, swing in zip(self.maps, aim)])
 
     def at_most(self, told: ComplexArray) -> float:
-        """What the next move leaves at most, in 95 of 100 cases."""
+        """Return the most that the next move leaves, in 95 of 100 cases."""
         many = 2.0  # deviations
         aimed = np.abs([m.swing(t) - w for m, t, w in zip(self.maps, told, self._wanted)])
         unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, told)])
@@ -400,12 +400,12 @@ class Evidence:
 
     @property
     def left(self) -> float:
-        """What swung at arrival of the last move, of all modes: the mean of its recordings."""
+        """Swing of all modes at arrival of the last move: the mean of its recordings."""
         return float(np.abs(self._swings[-1]).sum(axis=1).mean())
 
     @cached_property
     def _frequency_share(self) -> ComplexArray:
-        """What of that follows from the parameters that are changed, by mode."""
+        """Part of the last move's swing that follows from the changed parameters, by mode."""
         if not self.changed:
             return np.zeros(len(self.modes.values), complex)
         before = self._motion(self.history.moves[-1], self._plan.task.plant)
@@ -420,7 +420,7 @@ class Evidence:
 
     @property
     def repeatable(self) -> float:
-        """What the machine leaves beside that, and beside what was wanted."""
+        """Swing left beside what changed parameters explain, and beside what was wanted."""
         rest = self._left[-1] - self._frequency_share - self._wanted
         return float(np.abs(rest).sum())
 
@@ -431,7 +431,7 @@ class Evidence:
 
     @property
     def floor(self) -> float:
-        """What no plan takes away: twice the deviation of one move."""
+        """Swing that no plan takes away: twice the deviation of one move."""
         single = self._of_one[-1]
         if self._scatter is not None:
             single = np.hypot(single, self._scatter)
@@ -439,12 +439,12 @@ class Evidence:
 
     @property
     def beyond(self) -> float:
-        """What moves the tip beside its modes, and what a torque does not tell [m]."""
+        """Motion of the tip beside its modes, and what a torque does not tell [m]."""
         return self._unseen + max(one.after.other for one in self._read)
 
     @cached_property
     def _unseen(self) -> float:
-        """What a torque's frequency does not tell: twice the deviation that it leaves [m].
+        """Swing that a torque's frequency does not tell: twice the deviation that it leaves [m].
 
         0 where a tip was recorded.
         """
@@ -465,12 +465,12 @@ class Evidence:
 
     @property
     def doubts(self) -> list[str]:
-        """Whether moves repeat, and the machine stays what it is."""
+        """Doubts whether moves repeat, and whether the machine stays what it is."""
         return [*self._changes, *self._differences]
 
     @property
     def _changes(self) -> list[str]:
-        """That a frequency was another in another move of the history, clearly, in words."""
+        """Words on a frequency that clearly was another in another move of the history."""
         least = 0.01  # share of a frequency; less is what amplitude and friction make of it
         clear = 5.0  # deviations
         words = list[str]()
@@ -492,7 +492,7 @@ class Evidence:
 
     @property
     def _differences(self) -> list[str]:
-        """That the recordings of the last move differ, in words."""
+        """Words on recordings of the last move that differ."""
         most = 0.5  # share of what is left, by which moves may differ
         beyond = 3.0  # deviations of the noise, by which they differ at any rate
         noise = beyond * float(np.sqrt(2) * self._of_one[-1].sum())

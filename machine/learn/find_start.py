@@ -1,4 +1,4 @@
-"""Where in a recording the move of a plan begins: found by the joint, the force or the tip.
+"""Find where in a recording the move of a plan begins, by the joint, the force or the tip.
 
 What was recorded is compared with what the plan says of it, at every place of the recording: the
 joint's angle with its path, the torque with what acceleration, swing and friction take, a tip's
@@ -39,7 +39,7 @@ _SAME_WAY = 0.03
 
 @dataclass(frozen=True)
 class Start:
-    """Where a move begins in a recording.
+    """Place where a move begins in a recording.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ def _with_frequencies(plan: Plan, factor: float) -> JudgedMotion | None:
 
 
 def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
-    """That a joint leaves the plan's path by more than a servo does, in words; empty where not.
+    """Say that a joint leaves the plan's path by more than a servo does; empty where not.
 
     It may be another plan's move.
     """
@@ -152,7 +152,7 @@ def off_the_path(plan: Plan, recording: Recording, start: Start) -> str:
 
 
 def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
-    """ValueError where a tip follows the joint's path far better than what was given as the joint.
+    """Refuse a tip that follows the joint's path far better than what was given as the joint.
 
     A tip swings beside the path, and a joint does not.
     """
@@ -172,7 +172,7 @@ def refuse_exchanged(plan: Plan, recording: Recording, start: Start) -> None:
 
 
 def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
-    """ValueError where a recording is of an earlier move of a plan's history, not of the plan."""
+    """Refuse a recording of an earlier move of a plan's history, not of the plan."""
     far_better = 0.2  # times what the plan leaves unexplained
     if start.signal not in ("angle", "tip") or plan.learned is None:
         return
@@ -194,7 +194,7 @@ def _refuse_earlier(plan: Plan, recording: Recording, start: Start) -> None:
 
 
 def tip_share(motion: JudgedMotion, recording: Recording) -> float | None:
-    """How much of the plant's swing a tip shows during the move, by a motion with its frequency.
+    """Return the share of the plant's swing that a tip shows during a motion with its frequency.
 
     None where the tip was not seen during the move, or follows another course.
     """
@@ -214,7 +214,7 @@ _WORDS = {"angle": "joint", "torque": "torque", "tip": "tip", "acceleration": "a
 
 
 def courses_of(motion: JudgedMotion, signal: str) -> Sequence[Array]:
-    """What a signal consists of during the move, each with an unknown size: rows of `_POINTS`.
+    """Return a signal's parts during the move, each of unknown size: rows of `_POINTS`.
 
     `served` is the angle as a servo without feed-forward lets it follow.
     """
@@ -306,7 +306,7 @@ class StartSearch:
         return lag + step * float(found.x[0]), 1 - float(found.fun)
 
     def refuse_stretched(self, name: str, lag: float, explained: float, met: float) -> None:
-        """ValueError where a clock that is off by some per mille meets the move, not the plan's.
+        """Refuse a move that is met by a clock off by some per mille, and not by the plan's.
 
         A move is met where no more than a share is unexplained, and far less than by the plan.
         """
@@ -334,7 +334,7 @@ class StartSearch:
         return lag + step * float(place), stretch * (1 + _PER_CENT * float(clock)), float(found.fun)
 
     def _holds_all(self, begin: float, stretch: float) -> bool:
-        """Whether the move, by a clock, is all the way that the recording goes, and no piece."""
+        """Return whether the move, by a clock, is all the recorded way, and no piece of it."""
         if not 0.2 <= stretch <= 5:
             return False
         nearly = 0.9  # share of the way; a swing after the move goes beyond it
@@ -346,7 +346,7 @@ class StartSearch:
         return self._sizes((window - window.mean()) @ self._courses)
 
     def refuse_other_clock(self, name: str, explained: float, most: float) -> None:
-        """ValueError where the move is met by a clock that runs faster or slower.
+        """Refuse a move that is met by a clock that runs faster or slower.
 
         A move is met where no more than a share is unexplained.
         """
@@ -407,7 +407,7 @@ def _check_way(plan: Plan, recording: Recording, lag: float, share: float) -> No
 
 
 def _way(recording: Recording, begin: float, duration: float) -> float:
-    """How far a joint goes in a recording, from before a move to after it."""
+    """Return how far a joint goes in a recording, from before a move to after it."""
     assert recording.angle is not None
     time, angle = recording.time, recording.angle
     margin = _BEFORE * duration

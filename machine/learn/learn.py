@@ -124,14 +124,14 @@ def learn(
 
 
 def _change(before: float, after: float) -> str:
-    """By how much an energy changes, in words."""
+    """Say by how much an energy changes."""
     return f"{100 * (after / before - 1):+.2g} %"
 
 
 def _evidence(
     plan: Plan, recordings: Sequence[Recording | RobotRecording]
 ) -> tuple[Evidence, list[ReadMove], list[str]]:
-    """What the moves of a plan of one joint tell, how they were read, and what was mended."""
+    """Return what moves of a plan of one joint tell, how they were read, and what was mended."""
     recordings, notes = without_glitches(checked_recordings(recordings))
     read = [read_move(plan, recording) for recording in recordings]
     evidence = evidence_of(plan, read)
@@ -142,7 +142,7 @@ def _evidence(
 
 
 def check_plan(plan: Plan) -> None:
-    """ValueError where nothing of a plan could be learned."""
+    """Refuse a plan of which nothing could be learned."""
     plant = plan.task.plant
     if plan.profile.size == 0:
         raise ValueError(
@@ -202,5 +202,5 @@ def read_move(plan: Plan, recording: Recording) -> ReadMove:
 
 
 def _with(after: AfterMove, note: str) -> AfterMove:
-    """What was read after a move with one more note, if there is one."""
+    """Return what was read after a move with one more note, if there is one."""
     return replace(after, notes=(*after.notes, note)) if note else after

@@ -1,4 +1,4 @@
-"""What the recordings of several moves of one machine tell of all of its moves.
+"""Learn about all moves of one machine from recordings of several.
 
 First the model, by all recordings together. Then the deviation that the machine has beside it: of a
 linear machine it is a share of the tip's largest displacement that changes smoothly with where a
@@ -39,7 +39,7 @@ _OF_LARGE_SWINGS = 0.04
 
 @dataclass(frozen=True)
 class SmoothDeviation:
-    """How one mode swings at arrival, by where a move goes and how long it takes.
+    """The deviation of one mode's swing at arrival, by where a move goes and how long it takes.
 
     The swing is a share of what the plant says, plus a deviation: the way over the duration squared
     times a polynomial of second degree in target, way and duration.
@@ -65,14 +65,14 @@ class SmoothDeviation:
         return complex(columns_of(move, self.centre, self.spread) @ terms)
 
     def told_for(self, move: tuple[float, float, float], wanted: complex) -> complex:
-        """What the plant should say of set points, so that a wanted swing is left [m]."""
+        """Return what the plant should say of set points, so that a wanted swing is left [m]."""
         return (wanted - self.deviation(move)) / complex(*self.share)
 
 
 def columns_of(
     move: tuple[float, float, float], centre: Sequence[float], spread: Sequence[float]
 ) -> Array:
-    """What each term of the polynomial adds to a move's deviation."""
+    """Return the part that each term of the polynomial adds to a move's deviation."""
     start, target, duration = move
     values = np.array([target, target - start, duration])
     scaled = (values - np.array(centre)) / np.array(spread)
@@ -100,7 +100,7 @@ class MovesOfMachine:
         self.moves = tuple(moves)
 
     def without(self, number: int) -> MovesOfMachine:
-        """The same without one move."""
+        """Return all moves but one."""
         kept = [move for k, move in enumerate(self.moves) if k != number]
         return MovesOfMachine(self.task, kept)
 
@@ -162,11 +162,11 @@ class MovesOfMachine:
 
     @cached_property
     def told(self) -> ComplexArray:
-        """What the plant with what is changed says of each move (moves, modes) [m]."""
+        """Swing that the plant with what is changed says of each move (moves, modes) [m]."""
         return np.stack([told_of(move, self.task, self.plant) for move in self.moves])
 
     def smooth(self, span: Array) -> list[SmoothDeviation]:
-        """How each mode deviates.
+        """Fit the deviation of each mode.
 
         Parameters
         ----------
@@ -206,9 +206,9 @@ class MovesOfMachine:
         }  # fmt: skip
 
     def left_out(self, span: Array) -> Array:
-        """What each move would leave if it were corrected by the others' recordings [m].
+        """Return what each move would leave if it were corrected by the others' recordings [m].
 
-        What the others predict of it, model and deviation, less what it left.
+        That is what the others predict of it, model and deviation, less what it left.
         """
         unexplained = list[float]()
         for number, move in enumerate(self.moves):

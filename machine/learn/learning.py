@@ -1,4 +1,4 @@
-"""What was learned of a machine from executed moves, and the plan of the next one."""
+"""Results of learning: what executed moves told of a machine, and the plan of the next one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from quietarm.ocp.planning.plan import Plan
 
 @dataclass(frozen=True)
 class Learning:
-    """What a machine left of a plan's move, and the plan that makes up for it.
+    """The result of learning: what a machine left of a plan's move, and the plan that corrects it.
 
     Lengths are displacements of the tip [m, of a tip that turns rad], of all modes together.
 
@@ -68,7 +68,7 @@ class Learning:
 
     @property
     def is_done(self) -> bool:
-        """Whether there is nothing more to learn: what is left is noise."""
+        """Return whether there is nothing more to learn: what is left is noise."""
         return self.step == 0.0
 
     def machine_from(self, known: Identified) -> Identified:

@@ -1,4 +1,4 @@
-"""What the joint and its torque tell of a swing: the frequency, and what the structure must do.
+"""Read a swing from the joint and its torque: its frequency, and what the structure must do.
 
 While the joint moves, its torque accelerates the masses, overcomes friction, and holds against the
 swing. Which frequency the swing has is fitted to that. What swings at arrival then follows from the
@@ -34,7 +34,7 @@ _OF_LARGE_SWINGS = 0.01
 
 
 class TorqueColumns(BasisColumns):
-    """What a torque consists of while the joint moves: the swing's reaction, inertia and friction.
+    """The parts of a torque while the joint moves: the swing's reaction, inertia and friction.
 
     The structure rests at the start. All is averaged over some rows, as the torque is: further
     modes and the servo's answer to its encoder's steps are faster than the swing.
@@ -152,7 +152,7 @@ def _close_spline(recording: Recording, frequency: float) -> Any:
 
 
 def _answer(fitter: PartFitter, time: Array, spline: Any) -> BasisColumns:
-    """What a joint's motion does to the signals of a fitter."""
+    """Return the answer of a fitter's signals to a joint's motion."""
     fastest = 2 * np.pi * fitter.fastest
     if fitter.response.is_linear:
         return Forced(fitter.response, time, spline, fastest)

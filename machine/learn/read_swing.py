@@ -1,4 +1,4 @@
-"""What swings after a move: frequency, damping, and each mode's amplitude and phase at arrival."""
+"""Read the swing after a move: frequency, damping, and each mode's swing at arrival."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ FAR = 0.5
 
 @dataclass(frozen=True)
 class AfterMove:
-    """What was read of the swing after one move.
+    """The swing that was read after one move.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ def read_swing(
 
 
 def _notes(fitter: PartFitter, fitted: Part, part: Part | None) -> tuple[str, ...]:
-    """What is to be known of a swing: how it changes with its amplitude, and what is doubted."""
+    """Return notes on a swing: how it changes with its amplitude, and what is doubted."""
     name = fitter.recording.name
     notes = list[str]()
     for parameter, (low, high) in (part.spread if part else {}).items():
@@ -163,7 +163,7 @@ def _rows_of(values: Array | None, rows: slice) -> Array | None:
 
 
 def _is_swing(fitter: PartFitter, part: Part) -> bool:
-    """Whether a fit meets a swing and tells its frequency: no noise or drift in its place."""
+    """Return whether a fit meets a swing and tells its frequency, not noise or drift instead."""
     most_unexplained = 0.2
     most_unsure = 0.01  # share of a frequency
     unsure = [

@@ -73,7 +73,7 @@ class TipModes:
 
     @property
     def frequencies(self) -> Array:
-        """Of the modes [Hz]."""
+        """Frequencies of the modes [Hz]."""
         return self.values.imag / (2 * np.pi)
 
     def amplitudes(self, state: Any) -> ComplexArray:

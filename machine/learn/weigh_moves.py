@@ -18,7 +18,7 @@ from quietarm.machine.identify.identified import Estimate, Part
 
 
 def weigh_moves(name: str, parts: Sequence[Part], swings: Mapping[str, float]) -> Estimate | None:
-    """What parts of moves tell of a parameter together; None where that is as wide as its value.
+    """Estimate a parameter from parts of moves together; None if it is as unsure as its value.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ def running(time: Array, tick: float = 0.0, numbers: Rows | None = None) -> Cloc
 
 
 class Wraps(NamedTuple):
-    """Where a counter wraps, after how many bits (0: at midnight), and its whole period [s]."""
+    """Wraps of a counter: where, after how many bits (0: at midnight), and its period [s]."""
 
     after: Rows
     bits: int
@@ -101,7 +101,7 @@ class Wraps(NamedTuple):
         return time + np.cumsum(whole)
 
     def in_words(self, numbers: Sequence[int] | Rows) -> str:
-        """What was unwrapped, and where."""
+        """Say what was unwrapped, and where."""
         more = f" and {len(self.after) - 1} more" if len(self.after) > 1 else ""
         counter = f"a counter of {self.bits} bits, wraps" if self.bits else "a time of day, wraps"
         return (
@@ -152,7 +152,7 @@ def _periods(time: Array, tick: float) -> Iterator[tuple[int, float, float]]:
 
 
 def _are_whole(time: Array, tick: float) -> bool:
-    """Whether times are multiples of a tick."""
+    """Return whether times are multiples of a tick."""
     ticks = time / tick
     unsure = 1e-3 + 4e-16 * np.abs(ticks).max()
     if unsure > 0.2 or np.ptp(ticks) < 1:
@@ -220,7 +220,7 @@ def _without_strays(time: Array, numbers: Rows) -> Mended | None:
 
 
 def _why_back(time: Array, numbers: Rows) -> str:
-    """Why the time goes back: that it starts anew, or was set; and what to do."""
+    """Say why the time goes back: that it starts anew, or was set; and what to do."""
     steps = np.diff(time)
     usual, _ = _usual(steps)
     anew = np.flatnonzero(-steps > _SHORT * usual) + 1
@@ -250,7 +250,7 @@ def holes(time: Array) -> Rows:
 
 
 def holes_in_words(time: Array, numbers: Rows) -> Mapping[str, str]:
-    """Where samples lack, and for how long; empty where they do not."""
+    """Say where samples lack, and for how long; empty where they do not."""
     after = holes(time)
     if not len(after):
         return {}

@@ -1,4 +1,4 @@
-"""How large the swing at a frequency is over time."""
+"""The size of the swing at a frequency over time."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def _glitches(time: Array, values: Array) -> NDArray[np.bool_]:
 
 
 def _that_return(values: Array, candidates: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Of samples that stand out those after which the signal is back: a step is no glitch."""
+    """Keep the samples that stand out after which the signal is back: a step is no glitch."""
     far_out = 3.0  # times the steps of the signal beside a glitch, by which it begins and ends
     glitches = candidates.copy()
     last = len(values) - 1

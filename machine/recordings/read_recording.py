@@ -24,7 +24,7 @@ _NEED_A_SCALE = ("time", "angle", "torque")
 
 
 class Columns(NamedTuple):
-    """What the columns of a recording are: names, units and scales by quantity of `OF_OPTIONS`.
+    """The columns of a recording: names, units and scales by quantity of `OF_OPTIONS`.
 
     A joint's position is its angle, and a force its torque; which is meant the kind of joint tells.
     With a rate [Hz] no time is read.
@@ -109,7 +109,7 @@ def _with_time(table: Table, columns: Columns) -> dict[str, Sequence[str]]:
 
 
 def _factor(table: Table, heading: str, quantity: str, columns: Columns) -> float:
-    """What one of a column is in SI units, of a kind of joint."""
+    """Return the factor of a column to SI units, for a kind of joint."""
     label = words_of(quantity).of(columns.joint)
     unit = columns.units.get(quantity) or columns.units.get(label, "")
     scale = columns.scales.get(quantity, columns.scales.get(label))
@@ -117,7 +117,7 @@ def _factor(table: Table, heading: str, quantity: str, columns: Columns) -> floa
 
 
 def tick_of(table: Table, named: Mapping[str, Sequence[str]], columns: Columns) -> float:
-    """What the time's column counts in [s]; 0 where it has no whole numbers, or there is none."""
+    """Return the tick of the time's column [s]; 0 if it has no whole numbers, or there is none."""
     if "time" not in named:
         return 0.0
     (heading,) = named["time"]
@@ -137,7 +137,7 @@ def _refuse_far(path: Path, signals: Mapping[str, Array], joint: str) -> None:
 
 
 def _without_unit(table: Table, named: Mapping[str, Sequence[str]], columns: Columns) -> list[str]:
-    """How columns are taken whose names end in what may be a unit and is no known one."""
+    """Say how columns are read whose names end in what may be a unit and is no known one."""
     notes = list[str]()
     for quantity in _NEED_A_SCALE:
         label = words_of(quantity).of(columns.joint)

@@ -104,7 +104,7 @@ def _recording(
 def _factor(
     table: Table, heading: str, quantity: str, columns: Columns, plant: Plant | None = None
 ) -> float:
-    """What one of a column is in SI units; the name of a joint at its end is no unit."""
+    """Return the factor of a column to SI units; the name of a joint at its end is no unit."""
     unit = columns.units.get(quantity, "")
     ends_in_joint = plant is not None and heading.strip().endswith(plant.joint_names)
     if ends_in_joint and not unit and quantity not in columns.scales:
@@ -136,7 +136,7 @@ def _headings(table: Table, signal: str, given: Sequence[str], plant: Plant) -> 
 
 
 def _patterns(front: str, joints: Sequence[str]) -> Iterator[list[str]]:
-    """What columns of all joints may be called, with what they begin with."""
+    """Yield the names that columns of all joints may have, with what they begin with."""
     for mark in ("_", ".", "/", " "):
         yield [f"{front}{mark}{joint}" for joint in joints]
         yield [f"{joint}{mark}{front}" for joint in joints]

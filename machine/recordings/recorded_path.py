@@ -33,7 +33,7 @@ class RecordedPath:
 
     @property
     def duration(self) -> float:
-        """How long it takes [s]."""
+        """Duration of the path [s]."""
         return float(self.motion.times[-1])
 
 

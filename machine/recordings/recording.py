@@ -1,4 +1,4 @@
-"""What was measured of a machine: the joint's angle, and what its tip and its torque did."""
+"""Measurements of a machine: the joint's angle, and what its tip and its torque did."""
 
 from __future__ import annotations
 
@@ -153,18 +153,18 @@ class Recording:
 
     @property
     def _arrays(self) -> dict[str, Array]:
-        """What is given, by name."""
+        """Arrays that are given, by name."""
         names = ("time", "angle", "tip", "acceleration", "torque")
         return {name: v for name in names if (v := getattr(self, name)) is not None}
 
     @property
     def measured(self) -> dict[str, Array]:
-        """All that is given but the time, by name."""
+        """Arrays that are given, but the time, by name."""
         return {name: values for name, values in self._arrays.items() if name != "time"}
 
     @property
     def signals(self) -> dict[str, Array]:
-        """What is compared with the plant, a column each, by name."""
+        """Signals that are compared with the plant, a column each, by name."""
         arrays = {k: v for k, v in self._arrays.items() if k not in ("time", "angle")}
         return {name: values.reshape(len(values), -1) for name, values in arrays.items()}
 
@@ -194,9 +194,9 @@ class Recording:
         return replace(self, **{name: values[rows] for name, values in self._arrays.items()})
 
     def averaged(self, count: float) -> Recording:
-        """Its means over so many rows each, in none of which samples lack for as long.
+        """Return means over so many rows each, in none of which samples lack for as long.
 
-        Itself where these are fewer than two.
+        It returns the recording itself where these are fewer than two.
         """
         size = max(1, int(min(count, len(self.time) / LEAST_ROWS)))
         rows = len(self.time) // size * size
@@ -209,7 +209,7 @@ class Recording:
 
 
 def _lost_in_words(whole: NDArray[np.bool_]) -> dict[str, str]:
-    """How many rows are not whole, and which is the first; empty where all are."""
+    """Say how many rows are not whole, and which is the first; nothing where all are."""
     lost = np.flatnonzero(~whole)
     if not len(lost):
         return {}

@@ -1,4 +1,4 @@
-"""What was recorded of a robot's move: torques, positions, and the tip's acceleration.
+"""Recordings of a robot's move: torques, positions, and the tip's acceleration.
 
 A controller's log has gaps, a first row that is not of the move, and a coarse clock. Times are
 mended as those of a `Recording`.
@@ -88,7 +88,7 @@ class RobotRecording:
 
     @property
     def swinging(self) -> tuple[str, Array]:
-        """By what its swing is read, and its columns: the tip's acceleration before torques."""
+        """Signal by which the swing is read, and its columns: acceleration before torques."""
         if self.acceleration is not None:
             return "acceleration", self.acceleration
         assert self.torques is not None  # one of both is given
@@ -114,7 +114,7 @@ def _columns(recording: str, name: str, values: Any) -> Array:
 
 
 def _first_row(time: Array, values: Array) -> tuple[int, str]:
-    """The first row that is of the recording, and why one before it is none.
+    """Return the first row that is of the recording, and why one before it is none.
 
     Loggers begin with zeros, or with what was left of the last run.
     """

@@ -66,7 +66,7 @@ def _maxima_by_height(levels: Array) -> Iterator[int]:
 
 
 def _prominence(levels: Array, place: int) -> float:
-    """How far one has to go down from a place before a higher one is reached, on either side."""
+    """Return the drop from a place before a higher one is reached, on either side."""
     height = levels[place]
     higher_before = np.flatnonzero(levels[:place] > height)
     higher_after = np.flatnonzero(levels[place + 1 :] > height)

@@ -46,7 +46,7 @@ def mended(arrays: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, str
 
 
 def _stand_twice(arrays: Mapping[str, Array], again: NDArray[np.bool_]) -> bool:
-    """Whether every row with the stamp of the row before is that row in all else, too."""
+    """Return whether every row with the stamp of the row before is that row in all else, too."""
     places = np.flatnonzero(again)
     return all(
         np.array_equal(values[places], values[places - 1], equal_nan=True)

@@ -22,14 +22,14 @@ _CLOCK = re.compile(
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number, whatever its decimal mark and its thousands separator."""
+    """Return whether a cell is a number, with any decimal mark and thousands separator."""
     no_numbers = ("nan", "inf", "infinity")
     plain = _GROUPED.sub("", cell)
     return bool(_NUMBER.fullmatch(plain)) or plain.lstrip("+-").lower() in no_numbers
 
 
 def is_clock(cell: str) -> bool:
-    """Whether a cell is a time of a clock, as 05:06:07.25 after a date or not."""
+    """Return whether a cell is a time of a clock, such as 05:06:07.25, after a date or not."""
     return bool(_CLOCK.fullmatch(cell.strip()))
 
 

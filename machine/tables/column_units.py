@@ -71,7 +71,7 @@ _AFTER = re.compile(r"(.*?[^\s_/,:;-])\s*(?:[_/,:; -]| in )\s*([^\s_,:;-]+(?:\s*
 
 
 def kind_of(unit: str) -> str:
-    """What a unit is one of, in words; empty where it is unknown."""
+    """Name the kind of quantity that a unit measures, in words; empty if it is unknown."""
     return next((words for kind, words in KINDS.items() if normal(unit) in UNITS[kind]), "")
 
 
@@ -112,7 +112,7 @@ def split_name(name: str) -> tuple[str, str]:
 
 
 def is_unit(text: str) -> bool:
-    """Whether a cell is a unit and nothing else, as in a row of units below the names."""
+    """Return whether a cell is a unit and nothing else, as in a row of units below the names."""
     text = text.strip()
     bracketed = text[:1] in "([{" and text[-1:] in ")]}" and len(text) > 1
     if bracketed and _INDEX.fullmatch(text[1:-1].strip()):

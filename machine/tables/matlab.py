@@ -52,7 +52,7 @@ def read_matlab(content: bytes, *, simple: bool) -> dict[str, Any]:
 
 
 def _unpacked(part: Any, arrays: Mapping[str, Any]) -> Any:
-    """What `matlab_process` has packed."""
+    """Rebuild the value that `matlab_process` has packed."""
     match part:
         case {"entries": entries}:
             return {name: _unpacked(entry, arrays) for name, entry in entries.items()}

@@ -41,7 +41,7 @@ def main() -> None:
 
 
 def _packed(value: Any, arrays: list[Any]) -> Any:
-    """How a value is made up: fields, cells, a text or an array's number; None of anything else."""
+    """Describe how a value is made up: fields, cells, a text or an array's number; else None."""
     # letters of a text, as of a signal's label
     longest = 1000
     if isinstance(value, Mapping):

@@ -50,7 +50,7 @@ class Column:
 
     @property
     def written(self) -> str:
-        """Its unit, wherever it is written; empty where it is nowhere.
+        """Unit of the column, wherever it is written; empty where it is nowhere.
 
         Of a time a heading may be nothing else, as ``micros`` of the sketches of small boards.
         """
@@ -117,7 +117,7 @@ class Table:
         return f"its columns, by name or by number from 0, are {listed(names)}{more}"
 
     def _first_is_time(self) -> bool:
-        """Whether the first column rises evenly, and does not only count the rows.
+        """Return whether the first column rises evenly, and does not only count the rows.
 
         A counter that wraps rises as well.
         """
@@ -139,7 +139,7 @@ class Table:
         scale: float | None = None,
         option: str = "",
     ) -> float:
-        """What one of a column is in SI units: by a scale, a unit, that of its name, or 1.
+        """Return a column's factor to SI units: by a scale, a unit, that of its name, or 1.
 
         A unit that is given holds whatever the name says. FileFormatError where its name ends in
         what may be a unit or not, or is one of something else; it names the options of a command
@@ -174,7 +174,7 @@ class Table:
 
 
 def unused_in_words(unused: Sequence[str]) -> str:
-    """That columns are not used, in a sentence; empty where all are."""
+    """Say that columns are not used; empty where all are."""
     most = 8
     if not unused:
         return ""
@@ -185,7 +185,7 @@ def unused_in_words(unused: Sequence[str]) -> str:
 
 
 def _rises(values: Array) -> bool:
-    """Whether numbers rise evenly, but where a counter wraps or a recording begins anew."""
+    """Return whether numbers rise evenly, but where a counter wraps or a recording begins anew."""
     few = 0.01  # share of the steps that go back
     finite = values[np.isfinite(values)]
     back = np.diff(finite) < 0
@@ -196,9 +196,10 @@ def _rises(values: Array) -> bool:
 
 
 def rises_evenly(values: Array) -> bool:
-    """Whether numbers rise as the times of samples do: all by the usual step, but where some lack.
+    """Return whether numbers rise as the times of samples do: by the usual step.
 
-    Stamps may be rounded: to so much that several are the same.
+    Some steps may be longer, where samples lack. Stamps may be rounded: to so much that several are
+    the same.
     """
     least_steps = 8
     # share of the steps that are the usual one where a column rises evenly
@@ -221,7 +222,7 @@ def _without_unit(name: str) -> str:
 
 
 def _last_field(name: str) -> str:
-    """Of a structure's column the name of the field, without its unit."""
+    """Return the name of the field of a structure's column, without its unit."""
     return _without_unit(name.rpartition(".")[2])
 
 

@@ -84,7 +84,7 @@ def read_columns(content: bytes, strict: bool) -> TextColumns:
 
 
 def _is_rule(line: str) -> bool:
-    """Whether a line only separates a heading from its rows, as |---|:--:| does."""
+    """Return whether a line only separates a heading from its rows, as |---|:--:| does."""
     return "--" in line and not line.strip("-|+:= \t")
 
 

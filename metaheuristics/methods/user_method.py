@@ -66,7 +66,7 @@ def check_method(method: object) -> None:
 
 
 def why_not_sent(method: Method) -> str:
-    """Why a method cannot be sent to another process; empty where it can."""
+    """Say why a method cannot be sent to another process; empty where it can."""
     if isinstance(method, str):
         return ""
     import joblib  # not at the top: it takes long to load
@@ -106,7 +106,7 @@ def _ask_and_tell(method: AskTell, function: RecordedFunction, seed: int) -> Non
 
 
 def _refuse_unused(outcome: object, function: RecordedFunction) -> None:
-    """ValueError where a method has ended without any candidate, with what it may have meant."""
+    """Refuse a method that has ended without any candidate, and say what it may have meant."""
     if function.archive.evaluations:
         return
     remedy = "call function(candidates)"

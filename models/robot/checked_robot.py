@@ -72,7 +72,7 @@ class CheckedRobot(MovingRobot):
         self._check_modes()
 
     def _check_modes(self) -> None:
-        """As many as there are springs at most; by default two, or one."""
+        """Check that modes are no more than the springs; by default they are two, or one."""
         sprung = len(self.unscaled.sprung)
         if not sprung:
             raise ValueError(
@@ -294,7 +294,7 @@ def _vector(name: str, value: Any) -> tuple[float, float, float]:
 
 
 def _about_axes(name: str, value: Any, count: int) -> tuple[Any, ...]:
-    """Two numbers about x and y, or three; one is that of all axes of a count."""
+    """Return two numbers about x and y, or three; one number counts for as many axes as asked."""
     entries = (value,) * count if isinstance(value, int | float) else tuple(value)
     if len(entries) not in (2, 3):
         raise ValueError(

@@ -524,7 +524,7 @@ class RobotOnPath(Plant):
         return [_sum(list(zip(row, W))) + 0 * path.angle for row in rows]
 
     def tip_deviations(self, places: Array, tips: Array, target: float) -> Array:
-        """Where the tip is, as seen from where it rests at the target [m]: a row for each axis.
+        """Return where the tip is, seen from where it rests at the target [m]: a row for each axis.
 
         At rest it hangs lower by the sag at its place, with the robot's own springs and payload or
         so many times these.

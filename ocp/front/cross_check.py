@@ -34,7 +34,7 @@ class Compared:
 
     @property
     def difference(self) -> float:
-        """How much dearer the other one is, as a share of the energy."""
+        """Excess of the other energy, as a share of the energy."""
         return self.other / self.energy - 1
 
 

@@ -35,17 +35,17 @@ class Ends:
 
     @property
     def width(self) -> float:
-        """How far apart they are in the residual [m]."""
+        """Distance between the ends in the residual [m]."""
         return self.cheapest.residual - self.still.residual
 
     @property
     def height(self) -> float:
-        """How far apart they are in the energy [J]."""
+        """Distance between the ends in the energy [J]."""
         return self.still.energy - self.cheapest.energy
 
     @property
     def are_one(self) -> bool:
-        """Whether the two ends are the same motion, and there is no front between."""
+        """Return whether the two ends are the same motion, and there is no front between."""
         return self.width <= still_of(self.tradeoff.task) or self.height <= SAME * self.still.energy
 
 

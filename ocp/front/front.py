@@ -213,7 +213,7 @@ class Front(Answer):
         return {figure.column_on(plant): figures.get(figure.name, np.nan) for figure in further}
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the table that a notebook shows."""
         plant = self.task.plant
         unit = plant.tip_unit
         added = further_figures(FRONT, self.task)
@@ -329,7 +329,7 @@ class Front(Answer):
         )
 
     def restated(self, **changes: Any) -> Front:
-        """The same front with other entries of its record."""
+        """Return this front with other entries of its record."""
         return replace(self, record=replace(self.record, **changes))
 
     def smallest_residual(self) -> FrontPoint:
@@ -382,7 +382,7 @@ class Front(Answer):
 
     @property
     def has_knee(self) -> bool:
-        """Whether the knee is between the ends, and not chance on a nearly straight front."""
+        """Return whether the knee is between the ends, not chance on a nearly straight front."""
         return has_knee(self.objective_values, self.reference)
 
     def _nonempty(self) -> Sequence[FrontPoint]:
@@ -391,7 +391,7 @@ class Front(Answer):
         return self.points
 
     def why_empty(self) -> str:
-        """Why there is no point, from what became of the candidates, and what to try."""
+        """Say why there is no point, from what became of the candidates, and what to try."""
         none = "the front has no point;"
         if 0 < self.record.evaluations == self.failed:
             return f"{none} the motions of all {self.failed} candidates overflow; narrow the bound"

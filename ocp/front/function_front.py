@@ -138,7 +138,7 @@ class FunctionFront(Front):
         return list(self.outputs[2:])
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the table that a notebook shows."""
         head = [f"{objective.label} [{objective.unit or '-'}]" for objective in self.outputs]
         rows = [
             (*(f"{value:.5g}" for value in values), ", ".join(f"{a:.4g}" for a in coefficients))
@@ -147,7 +147,7 @@ class FunctionFront(Front):
         return to_html(rows, [*head, "coefficients"])
 
     def why_empty(self) -> str:
-        """Why there is no point, from what became of the candidates, and what to try."""
+        """Say why there is no point, from what became of the candidates, and what to try."""
         count = self.record.evaluations
         if 0 < count == self.failed:
             return (

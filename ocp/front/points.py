@@ -173,7 +173,7 @@ class Entries:
         return np.column_stack([column[:count] for column in columns])
 
     def beliefs(self, evaluations: int | None = None) -> NDArray[np.float64]:
-        """The same as the search took them: with its noise, where it had any."""
+        """Return the objectives as the search took them: with its noise, if it had any."""
         if not self.believed:
             return self.objectives(evaluations)
         return np.array(self.believed[: self._count(evaluations)])
@@ -212,7 +212,7 @@ def non_dominated_rows(table: NDArray[np.float64]) -> list[int]:
 
 
 class Evaluated(NamedTuple):
-    """What became of motions: the points of their front, how many are not in it, and why."""
+    """Evaluated motions: the points of their front, how many are not in it, and why."""
 
     points: tuple[FrontPoint, ...]
     failed: int
@@ -314,7 +314,7 @@ def knee_of(points: NDArray[np.float64], corner: ArrayLike) -> int:
 
 
 def has_knee(points: NDArray[np.float64], corner: ArrayLike) -> bool:
-    """Whether the knee is between the ends of a front, and not chance.
+    """Return whether the knee is between the ends of a front, and not chance.
 
     It is no end: its residual is a twentieth of the corner's at least, and each other objective as
     much above the least of the front. On a front that is nearly straight, which point has the least

@@ -1,4 +1,4 @@
-"""What a front of a user's own function has in the place of a task: its box and its names."""
+"""The box and the names that a front of a user's own function has in the place of a task."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class SearchedFunction:
         raise self.no_task()
 
     def no_task(self) -> NoTaskError:
-        """What to raise where a plant or a move is needed."""
+        """Error to raise where a plant or a move is needed."""
         return NoTaskError(
             f"this front is of the function {clipped(self.name)}, which has no plant and no task; "
             "give a front of a move for this"
@@ -107,7 +107,7 @@ class SearchedFunction:
 
     @property
     def outputs(self) -> tuple[Objective, ...]:
-        """Its objectives with units, and with the columns that they have in tables."""
+        """Objectives with units, and with the columns that they have in tables."""
         return tuple(
             Objective(name, unit, name.replace("_", " "), _column(name, unit))
             for name, unit in zip(self.objectives, self.units)

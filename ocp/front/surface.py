@@ -72,12 +72,12 @@ class Grid:
 
     @property
     def distinct(self) -> int:
-        """How many motions the cells have."""
+        """Number of different motions in the cells."""
         return len({id(solution) for solution in self.best.values()})
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many limits each axis has."""
+        """Number of limits on each axis."""
         return tuple(map(len, self.limits.values()))
 
     def sizes(self, cell: Cell) -> dict[str, float]:
@@ -104,7 +104,7 @@ class Grid:
         ]
 
     def holds(self, cell: Cell, solution: Solution, rounding: float = 1e-9) -> bool:
-        """Whether a solution is within the limits of a cell."""
+        """Return whether a solution is within the limits of a cell."""
         return all(
             solution.peaks[name] <= size * (1 + rounding) for name, size in self.sizes(cell).items()
         )

@@ -89,7 +89,7 @@ class TimeFront(Answer):
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """When each point acts [s]."""
+        """Times when each point acts [s]."""
         return np.array([point.acts_after for point in self.points])
 
     @property
@@ -99,9 +99,9 @@ class TimeFront(Answer):
 
     @property
     def prices(self) -> NDArray[np.float64]:
-        """What it takes to act a second earlier than each next point [J/s], one less than points.
+        """Prices of acting a second earlier than each next point [J/s], one less than points.
 
-        A thousandth of it are the joules for a millisecond.
+        A thousandth of a price is the energy in joules for a millisecond.
         """
         return -np.diff(self.energies) / np.diff(self.times)
 

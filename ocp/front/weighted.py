@@ -191,7 +191,7 @@ def _at_weights(
 
 
 def _sides(ends: Ends, still: Solution, cheap: Solution) -> tuple[float, float]:
-    """How far apart two solutions are in both objectives, scaled to the ends."""
+    """Return how far apart two solutions are in both objectives, scaled to the ends."""
     return (
         (cheap.residual - still.residual) / ends.width,
         (still.energy - cheap.energy) / ends.height,

@@ -34,7 +34,7 @@ WINDOW = 1.0
 
 @dataclass(frozen=True, eq=False)
 class TimedAnswer:
-    """What a trajectory does to a robot as it is timed, by CVODES on the whole equations.
+    """The effect of a trajectory on a robot as it is timed, by CVODES on the whole equations.
 
     Attributes
     ----------
@@ -90,14 +90,14 @@ class TimedAnswer:
 
     @property
     def largest_step(self) -> tuple[float, str, float]:
-        """By how much an acceleration jumps at most, of which joint, and when [s]."""
+        """Largest jump of an acceleration, its joint, and its time [s]."""
         steps = np.abs(self.motion.steps)
         at, joint = np.unravel_index(steps.argmax(), steps.shape)
         return float(steps[at, joint]), self.motion.joints[joint], float(self.motion.times[at])
 
     @cached_property
     def diagnosis(self) -> str:
-        """What is left after arrival, by which mode, what makes it ring, and what a plan leaves."""
+        """Words on what is left after arrival, by which mode and why, and what a plan leaves."""
         first, *others = sorted(self.swings, key=lambda swing: -swing[1])
         number = 1 + list(self.swings).index(first)
         words = (
@@ -112,7 +112,7 @@ class TimedAnswer:
             return f"{words}; its path cannot be planned along: {error}"
 
     def _cause(self, frequency: float) -> str:
-        """Whether steps of the acceleration or the pace of the move make it ring."""
+        """Say whether steps of the acceleration or the pace of the move make it ring."""
         left = _left_by(self.cycloid)
         swings = self.motion.duration * frequency / math.tau
         if self.residual <= _STILL:
@@ -134,7 +134,7 @@ class TimedAnswer:
         return f"the jerk makes it ring: {what}, where the plain cycloid leaves {_mm(left)}"
 
     def _remedy(self) -> str:
-        """What a plan leaves."""
+        """Say what a plan leaves."""
         try:
             left = _left_by(self.plan)
         except QuietarmError as error:
@@ -143,7 +143,7 @@ class TimedAnswer:
 
 
 def _left_by(plan: Plan) -> float:
-    """What a plan leaves by the whole equations [m]."""
+    """Return what a plan leaves by the whole equations [m]."""
     figures = plan.candidate.in_full
     return plan.residual if figures is None else figures.residual
 

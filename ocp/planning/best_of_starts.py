@@ -1,4 +1,4 @@
-"""Where a solver starts, and the best of what it finds; what is tried where it finds nothing."""
+"""Starts of a solver, the best of what it finds, and what is tried where it finds nothing."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def briefly(solver: Solver, problem: Program, tried: Sequence[Solution]) -> Solv
 
 
 def is_beyond(problem: Program, start: Array, share: float = 0.05) -> bool:
-    """Whether linear programs say that the limits have to be wider by more than a share."""
+    """Return whether linear programs say that the limits have to be wider by more than a share."""
     if not any(limit.name != RESIDUAL for limit in problem.limits):
         return False
     if problem.peak is not None:
@@ -130,7 +130,7 @@ def _lowest(solutions: Sequence[Solution], problem: Program) -> Solution:
 
 
 def better(solution: Solution, known: Solution, problem: Program) -> bool:
-    """Whether a solution is lower than a known one by more than the solver's tolerance."""
+    """Return whether a solution is lower than a known one by more than the solver's tolerance."""
     minimum = minimum_of(solution, problem)
     known_minimum = minimum_of(known, problem)
     if known_minimum == np.inf:
@@ -139,7 +139,7 @@ def better(solution: Solution, known: Solution, problem: Program) -> bool:
 
 
 def minimum_of(solution: Solution, problem: Program) -> float:
-    """What was minimised; infinite where nothing was solved."""
+    """Return the minimised value; infinite where nothing was solved."""
     values = {**solution.peaks, ENERGY: solution.energy}
     minimum = sum(weight * values[name] for name, weight in problem.minimise.items())
     return minimum if solution.status.solved else np.inf

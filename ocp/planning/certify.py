@@ -69,7 +69,7 @@ class Certified:
         return self.figures.energy
 
     def keeps(self, limits: Sequence[Limit], still: float) -> bool:
-        """Whether no limit is passed; a residual up to `still` [m] counts as rest."""
+        """Return whether no limit is passed; a residual up to `still` [m] counts as rest."""
         return all(limit.keeps(limit.peak_of(self.figures), 0.0, still) for limit in limits)
 
 
@@ -120,7 +120,7 @@ def certify_one(
     agreement: float = OF_A_PLAN,
     most_steps: int = MOST_SOLVER_STEPS,
 ) -> Certified:
-    """The same of one solution; its error is raised."""
+    """Certify one solution; its error is raised."""
     (outcome,) = certify(
         [problem], [solution], solver, limits, agreement=agreement, most_steps=most_steps
     )
@@ -155,7 +155,7 @@ class _Row:
 
     @property
     def figures(self) -> Figures:
-        """Of the last motion, by another integrator."""
+        """Figures of the last motion, by another integrator."""
         return self.tried[-1].figures
 
     def note(self, figures: Figures, arrival: Array) -> None:
@@ -174,13 +174,13 @@ class _Row:
 
     @property
     def is_rough(self) -> bool:
-        """Whether the solver's steps are too few for the energy."""
+        """Return whether the solver's steps are too few for the energy."""
         energy = self.figures.energy
         return abs(self.solution.energy - energy) > self.agreement * energy
 
     @property
     def differs(self) -> bool:
-        """Whether the residuals differ, or a limit is exceeded.
+        """Return whether the residuals differ, or a limit is exceeded.
 
         They may differ by a share of rest, or of the limit.
         """
@@ -210,7 +210,7 @@ def _settle(
     judge_all: Callable[[Sequence[_Row]], None],
     rounds: int = 12,
 ) -> list[Certified | SolverFailedError]:
-    """At most `rounds` times: correct or refine what differs, until nothing does.
+    """Correct or refine what differs, until nothing does, at most `rounds` times.
 
     It ends as well where no row was solved again.
     """
@@ -369,7 +369,7 @@ def tighten(
 def excess_error(
     verified: Figures, limits: Sequence[Limit], remedy: str, still: float = 0.0
 ) -> SolverFailedError | None:
-    """What to say of a verified motion that exceeds a limit although limits were tightened."""
+    """Return the error of a verified motion that exceeds a limit although limits were tightened."""
     for limit in limits:
         peak = limit.peak_of(verified)
         if not limit.keeps(peak, OVERRUN, still):

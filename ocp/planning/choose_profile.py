@@ -1,4 +1,4 @@
-"""Which profile a task takes where nobody names one: the one rule for plans, fronts and searches.
+"""The rule by which a task takes a profile if nobody names one: for plans, fronts and searches.
 
 Without limits six terms are the paper's, and more only make the starts harder. Within the limits of
 a drive they cost up to twice the least energy, or find no motion. Two terms more often save
@@ -102,7 +102,7 @@ def _plan_on_first_that_will_do(request: Request) -> Plan:
 
 
 def _is_held(request: Request) -> bool:
-    """Whether a plan for an uncertain plant has to keep a band or a stated residual limit.
+    """Return whether an uncertain plant's plan has to keep a band or a stated residual limit.
 
     Within a box of the coefficients a longer duration need not help: that is looked into.
     """
@@ -125,7 +125,7 @@ def _try_fit(request: Request, fit: SplineFit) -> Plan | None:
 
 
 def _no_motion(request: Request) -> str:
-    """What is said of limits that no motion comes near to."""
+    """Say that no motion comes near to the limits."""
     task = request.task
     limits = Program.of(task, SIX).within(request.residual_limit).limits
     stated = ", ".join(stated_limit(task, limit) for limit in limits)
@@ -143,7 +143,7 @@ def _plan_without_limits(request: Request) -> Plan | None:
 
 
 def _plan_of_held(request: Request) -> Plan | None:
-    """The same within a residual limit that is held: what can be had is soon found."""
+    """Return the plan within a residual limit that is held: what can be had is soon found."""
     brief = replace(request, solver=shortened(request.solver), quick=True)
     more = more_terms(request.task)
     plan = _try(brief)
@@ -200,7 +200,7 @@ def _plan_within_limits(request: Request) -> Plan | None:
 
 
 def _solve_with_six(request: Request) -> Solution:
-    """What six terms give for the nominal plant, by the solver's own steps."""
+    """Solve for the nominal plant with six terms, by the solver's own steps."""
     size = 0.0 if request.adapts else request.residual_limit
     nominal = request.on(request.task.certain).within(size)
     with_six = replace(nominal, profile=SIX)
@@ -224,7 +224,7 @@ def _try(request: Request) -> Plan | None:
 
 
 def _worst_residual(plan: Plan) -> float:
-    """What a plan leaves in the worst case [m]."""
+    """Return what a plan leaves in the worst case [m]."""
     return plan.residual if plan.worst is None else plan.worst.residual
 
 

@@ -77,7 +77,7 @@ def correct_in_full(plan: Plan, *, left: float = 1e-5, solver: Solver = Sqp()) -
 
 
 def refuse_correction(task: PointToPoint) -> None:
-    """ValueError where the plant of a task has nothing to be corrected by, or has errors."""
+    """Refuse a task whose plant has nothing to be corrected by, or has errors."""
     if task.plant.in_full is None:
         raise ValueError(
             f"{task.plant.name} has no other equations than those by which it is planned; only "

@@ -64,7 +64,7 @@ class Shuttle:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Cycle:
-    """What cycles of a motion take and leave.
+    """Cycles of a motion, and what they take and leave.
 
     Figures of effort and energy are those of one cycle from rest without errors; `left` follows the
     errors. Back the joint takes the same profile from the target to the start.
@@ -110,7 +110,7 @@ class Cycle:
 
     @property
     def motor_constant(self) -> float | None:
-        """Of the drive, or of the copper loss that is the task's energy [N m/W^0.5]; or None."""
+        """Motor constant of the drive, or of the task's copper loss [N m/W^0.5]; or None."""
         task = self.there.task
         if task.plant.drive is not None and task.plant.drive.motor_constant is not None:
             return task.plant.drive.motor_constant
@@ -243,7 +243,7 @@ class Cycle:
         return there, back
 
     def with_errors(self, errors: Mapping[str, float]) -> Cycle:
-        """The same cycles on the plant with these relative errors."""
+        """Return these cycles on the plant with these relative errors."""
         return replace(self, errors=dict(errors))
 
     def worst(self) -> Cycle:

@@ -1,6 +1,6 @@
-"""What a machine left of executed moves: the history that a learned plan keeps in its file.
+"""Executed moves and what a machine left of them: the history in a learned plan's file.
 
-It is what was measured, in units of the tip, and holds whatever the plant's parameters become.
+Its values are as measured, in units of the tip, and hold whatever the plant's parameters become.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from quietarm.ocp.task import ModalState
 
 @dataclass(frozen=True)
 class ArrivalSwing:
-    """How one mode swung at arrival, by the displacement of the tip that it moves most.
+    """The swing of one mode at arrival, by the displacement of the tip that it moves most.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class ArrivalSwing:
 
 @dataclass(frozen=True)
 class RecordedArrival:
-    """What one recording of an executed move tells.
+    """One recording of an executed move, by what it tells.
 
     Attributes
     ----------

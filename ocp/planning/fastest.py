@@ -60,7 +60,7 @@ class Fastest:
 
     @property
     def duration(self) -> float:
-        """Of the plan [s]."""
+        """Duration of the plan [s]."""
         return self.plan.task.duration
 
 
@@ -181,7 +181,7 @@ def _margins(task: PointToPoint) -> tuple[float, ...]:
 
 
 def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
-    """What is said of the longest duration that failed."""
+    """Say why the longest duration that failed is too short."""
     if least.too_short <= rigid_duration(task):
         return _RIGID
     return f"every motion found exceeds a limit by {max(least.excess, 1e-6):.1g} of it or more"
@@ -242,7 +242,7 @@ class _Tried:
         self._explained: set[float] = set()
 
     def succeeds(self, duration: float) -> bool:
-        """Whether there is a plan for a duration."""
+        """Return whether there is a plan for a duration."""
         task = replace(self.request.task, duration=duration)
         guess = None if self.best is None else self.best.coefficients
         request = self.request.on(task)
@@ -262,7 +262,7 @@ class _Tried:
         return True
 
     def succeeds_after_all(self, duration: float) -> bool:
-        """Whether there is a plan for a duration that failed, by the stand-in as well."""
+        """Return whether there is a plan for a duration that failed, by the stand-in as well."""
         if duration in self._explained:
             return False
         before = self._thorough
@@ -272,7 +272,7 @@ class _Tried:
         return succeeds
 
     def bracket(self, least: float) -> tuple[float, float]:
-        """Two durations, of which the longer one succeeds and the shorter one does not."""
+        """Return two durations, of which the longer one succeeds and the shorter one does not."""
         if least > 0:
             self.failed[least] = _RIGID
         low = max(least, LEAST_DURATION)

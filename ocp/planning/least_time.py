@@ -119,7 +119,7 @@ class SplineFit(NamedTuple):
 
     @property
     def keeps(self) -> bool:
-        """Whether its motion keeps every limit."""
+        """Return whether the motion keeps every limit."""
         return self.excess.holds and self.excess.share <= 0
 
 
@@ -142,7 +142,7 @@ def fit_spline(task: PointToPoint, residual_limit: float, bound: float | None) -
 
 
 def shaped_duration(task: PointToPoint) -> float:
-    """How long the rigid joint's fastest motion takes behind a ZV shaper for every mode [s].
+    """Return the time of the rigid joint's fastest motion behind a ZV shaper for every mode [s].
 
     ValueError where nothing limits the joint.
     """
@@ -258,7 +258,7 @@ class _Durations:
         return excess
 
     def _problem(self, program: Program) -> Program:
-        """Within narrower limits of what is limited on the way."""
+        """Return the problem within narrower limits of what is limited on the way."""
         problem = program.within(self._residual_limit, self._bound)
         limits = [
             limit.tightened(1 + self._margins.get(limit.name, 0.0)) for limit in problem.limits
@@ -279,7 +279,7 @@ class _Durations:
         return JudgedMotion.of_profile(task, self._profile, least.coefficients)
 
     def widen_margins(self, least: LeastTime) -> bool:
-        """Whether a motion passes limits by more than their margins, which are wider then."""
+        """Widen the margins that a motion passes limits by; return whether there are any."""
         exceeded = self._motion(least).figures.exceeded(self._task.limits)
         for name, ratio in exceeded.items():
             self._margins[name] += self.room * (ratio - 1)
@@ -347,7 +347,7 @@ class _Weights:
         self._went_up: bool | None = None
 
     def between(self, below: _Probe, above: _Probe, tolerance: float) -> float:
-        """Where the line through both ends is zero, not too near to either of them."""
+        """Return where the line through both ends is zero, not too near to either of them."""
         excess = self._of_below * below.share
         room = -self._of_above * above.share
         middle = below.duration + (above.duration - below.duration) * excess / (excess + room)

@@ -342,5 +342,5 @@ def _check(tasks: Sequence[PointToPoint], profile: JointProfile) -> None:
 
 
 def _common(task: PointToPoint) -> tuple[Plant, Energy, set[Quantity]]:
-    """What all moves have in common."""
+    """Return what all moves have in common."""
     return task.plant, task.energy, {limit.quantity for limit in task.limits}

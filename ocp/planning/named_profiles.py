@@ -49,5 +49,5 @@ def profile_of(name: str, task: PointToPoint, terms: int | None = None) -> Joint
 
 
 def chooses_terms(name: str, terms: int | None) -> bool:
-    """Whether the task settles the number of terms: of a polynomial, where none is given."""
+    """Return whether the task settles the number of terms: of a polynomial, if none is given."""
     return name == POLYNOMIAL and terms is None

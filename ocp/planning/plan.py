@@ -162,7 +162,7 @@ class Plan(MotionAnswer):
         return check
 
     def _verify_by(self, steps: int) -> Verification:
-        """The same by so many steps."""
+        """Verify the plan by so many steps."""
         evaluator = self.candidate.by_steps(steps, quantities=())
         evaluation = evaluator([self.coefficients])
         energy = float(evaluation.energy[0, 0])
@@ -170,7 +170,7 @@ class Plan(MotionAnswer):
         return Verification.between(steps, energy, residual, self.figures, rest_of(self.task))
 
     def on(self, task: PointToPoint) -> Plan:
-        """The same motion for an uncertain task with the same nominal plant."""
+        """Return this motion for an uncertain task with the same nominal plant."""
         return replace(self, task=task)
 
     @property
@@ -180,12 +180,12 @@ class Plan(MotionAnswer):
 
     @cached_property
     def sensitivities(self) -> tuple[Sensitivity, ...]:
-        """What energy and arrival change with each parameter of the plant; see `Sensitivity`."""
+        """Sensitivities of energy and arrival to each parameter of the plant; see `Sensitivity`."""
         return sensitivities(self.candidate)
 
     @property
     def turns_back(self) -> float:
-        """How far the joint moves backwards [rad], on either side of the target."""
+        """Largest way that the joint moves backwards [rad], on either side of the target."""
         times = np.linspace(0.0, self.task.duration, 2001)
         forward = np.sign(self.task.span) * self.path(times)
         return float((np.maximum.accumulate(forward) - forward).max())
@@ -204,7 +204,7 @@ class Plan(MotionAnswer):
 
     @cached_property
     def cycles(self) -> Cycle | None:
-        """What the cycles of its `shuttle` take and leave; None where it has none."""
+        """Cycles of its `shuttle`, with what they take and leave; None where it has none."""
         return None if self.shuttle is None else Cycle(self.candidate, self.shuttle)
 
     def _content(self) -> dict[str, Any]:
@@ -249,7 +249,7 @@ class Plan(MotionAnswer):
         return Trajectory(planned.time, planned.sample._replace(joints=[asked]))
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the table that a notebook shows."""
         task = self.task
         motion = self.motion
         residual = "at rest"
@@ -276,7 +276,7 @@ class Plan(MotionAnswer):
         return to_html(rows.items())
 
     def _robust_rows(self) -> dict[str, str]:
-        """What a notebook shows of parameter errors: their ranges, and the worst case."""
+        """Return the rows of parameter errors in a notebook: their ranges, and the worst case."""
         rows = dict[str, str]()
         unit = self.task.plant.tip_unit
         if ranges := self.task.ranges:

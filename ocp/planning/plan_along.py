@@ -241,7 +241,7 @@ def _solve_with_the_worst(
 
 
 def _solve(request: Request, starts: Sequence[Array], gives_up: bool = False) -> _Solved:
-    """What starts lead to, with the errors of `solve_from_starts`."""
+    """Solve from starts, with the errors of `solve_from_starts`."""
     if gives_up and not request.quick:
         try:
             return _solve(replace(request, quick=True), starts)
@@ -269,7 +269,7 @@ def _solve(request: Request, starts: Sequence[Array], gives_up: bool = False) ->
 
 
 def _solve_near(request: Request, starts: Sequence[Array]) -> _Solved:
-    """The same from a start that is nearly a solution, or from anew where that leads nowhere."""
+    """Solve from a start that is nearly a solution, or anew if that leads nowhere."""
     began = time.perf_counter()
     problem = request.problem()
     (best,) = best_of_starts([problem], [starts[:1]], request.solver, warm=True)

@@ -1,4 +1,4 @@
-"""What would be feasible where a task is not: the least peaks that a plan can have, in words."""
+"""Remedies for an infeasible task: the least peaks that a plan can have, in words."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def offers_for(problem: Program, starts: Sequence[Array], solver: Solver) -> str
 
 
 def _confirm(problem: Program, least: Mapping[str, Solution], solver: Solver) -> dict[str, float]:
-    """Those least peaks with which there is a plan, as CVODES finds them."""
+    """Return those of the least peaks with which there is a plan, as CVODES finds them."""
     limits = problem.limits
 
     def resimulated(solution: Solution) -> JudgedMotion:
@@ -78,7 +78,7 @@ def _widened(problem: Program, limit: Limit, peak: float) -> Program:
 
 
 def has_a_plan(problem: Program, start: Array, solver: Solver, most_refined: int = 2) -> bool:
-    """Whether a plan is found from one start, and CVODES confirms it.
+    """Return whether a plan is found from one start, and CVODES confirms it.
 
     It may take so many times the steps: where a remedy needs finer ones, it is at its own edge, and
     every doubling takes as long as all before.
@@ -99,7 +99,7 @@ class Attempt(Protocol):
 
     @property
     def status(self) -> SolveStatus:
-        """How it ended."""
+        """Status with which it ended."""
         ...
 
     @property
@@ -183,7 +183,7 @@ def least_peaks_of(
 def least_peaks(
     limits: Sequence[Limit], solve_least: Callable[[Sequence[Limit], str], Sequence[AnyAttempt]]
 ) -> dict[str, AnyAttempt]:
-    """The same by what makes one quantity small within the limits that remain."""
+    """Return the attempts that make each quantity least within the limits that remain."""
     best: dict[str, AnyAttempt] = {}
     for name in (limit.name for limit in limits):
         remaining = [limit for limit in limits if limit.name != name]

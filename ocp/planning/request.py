@@ -1,4 +1,4 @@
-"""What is asked for: a move along a profile within a residual limit, and how it is solved."""
+"""The request for a plan: a move along a profile within a residual limit, and how it is solved."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from quietarm.ocp.task import PointToPoint
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """All that a plan or a front depends on; it goes as one value from `plan_move` to the solver.
+    """A request, all that a plan or a front depends on, which goes from `plan_move` to the solver.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Request:
         return program.within(self.residual_limit, self.bound, minimise)
 
     def record(self, method: str, iterations: int, seconds: float, **also: Setting) -> Record:
-        """What found an answer so, with other settings of the method's own."""
+        """Return the record of how an answer was found, with other settings of the method's own."""
         settings: dict[str, Setting] = {"starts": self.starts, "steps": self.steps}
         settings |= self.solver.stated | also
         if self.guess is not None:
@@ -120,11 +120,11 @@ class Request:
         )
 
     def on(self, task: PointToPoint) -> Request:
-        """The same of another task."""
+        """Return this request for another task."""
         return replace(self, task=task)
 
     def stating(self, residual_limit: float | None) -> Request:
-        """The same within a residual limit [m] that is stated, or the task's default.
+        """Return this request within a residual limit [m] that is stated, or the task's default.
 
         ValueError where it is negative, or that of an uncertain task is 0.
         """
@@ -134,14 +134,14 @@ class Request:
         return replace(self, residual_limit=size, adapts=adapts)
 
     def within(self, size: float) -> Request:
-        """The same within a residual limit [m] that does not adapt."""
+        """Return this request within a residual limit [m] that does not adapt."""
         return replace(self, residual_limit=size, adapts=False)
 
     def from_guess(self, guess: ArrayLike) -> Request:
-        """The same from these coefficients first; ValueError where they do not fit the profile."""
+        """Return this request from these coefficients first; ValueError if they do not fit."""
         return replace(self, guess=self.profile.checked(guess))
 
     def along(self, profile: JointProfile, guess: ArrayLike | None = None) -> Request:
-        """The same along another profile from one start: the guess, or the plain motion."""
+        """Return this request along another profile, from the guess or the plain motion alone."""
         request = replace(self, profile=profile, starts=1, guess=None)
         return request if guess is None else request.from_guess(guess)

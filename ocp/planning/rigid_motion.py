@@ -30,7 +30,7 @@ _OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", "torque", TORQUE_SPEED, "d
 
 
 class RigidBounds(NamedTuple):
-    """What a rigid joint may do in the direction of a move, all positive and infinite if unlimited.
+    """Bounds of a rigid joint in the direction of a move, all positive and infinite if unlimited.
 
     Speed [rad/s], acceleration when it speeds up and when it brakes [rad/s^2], and the rates at
     which the acceleration may rise and fall [rad/s^3].
@@ -71,7 +71,7 @@ class RigidMotion:
 
     @property
     def free_motion(self) -> FreeMotion:
-        """The same as a joint motion in pieces, forwards; instants without length are left out."""
+        """Return this motion in pieces, forwards; instants without length are left out."""
         shortest = 1e-9  # [s]: what is shorter comes from rounding
         lasting = [piece for piece in self.pieces if piece.length > shortest]
         lengths, accelerations, jerks = zip(*lasting)
@@ -130,7 +130,7 @@ def _largest_speed(remaining: Callable[[float], float], most: float, halvings: i
 
 
 class _Ramp(NamedTuple):
-    """From rest to a speed: the time at which each of its pieces ends [s], and how far it gets."""
+    """Ramp from rest to a speed: the time at which each of its pieces ends [s], and its way."""
 
     switches: tuple[float, ...]
     distance: float
@@ -150,7 +150,7 @@ class _Ramp(NamedTuple):
 
     @classmethod
     def to(cls, speed: float, acceleration: float, rising: float, falling: float) -> _Ramp:
-        """As fast as acceleration and jerk allow; with neither at once."""
+        """Make the ramp that is as fast as acceleration and jerk allow; with neither at once."""
         if math.isinf(speed):
             return cls((math.inf,), math.inf)
         slowness = 1 / rising + 1 / falling
@@ -202,7 +202,7 @@ def declared_bounds(task: PointToPoint) -> RigidBounds:
 
 
 def _bounds_of_joints(task: PointToPoint) -> list[RigidBounds]:
-    """The same of every joint."""
+    """Return the bounds of every joint."""
     by_name = {limit.name: limit for limit in task.limits}
     line = by_name.get(TORQUE_SPEED)
     no_torque_beyond = math.inf
@@ -236,7 +236,7 @@ def _sides(limit: Limit | None, joint: int) -> tuple[float, float]:
 
 
 def _ways(task: PointToPoint) -> list[float]:
-    """From the first angle of every joint to its last."""
+    """Return the way of every joint, from its first angle to its last."""
     begin, end = (
         task.plant.joints(JointMotion(place, 0.0, 0.0)) for place in (task.start, task.target)
     )
@@ -248,7 +248,7 @@ def _distances(task: PointToPoint) -> list[float]:
 
 
 def _slopes(task: PointToPoint, least: float = 1e-9) -> np.ndarray:
-    """How far every joint goes for each unit of the path, at most along the way.
+    """Return how far every joint goes for each unit of the path, at most along the way.
 
     Not less than `least`, where a joint stands still while the path goes on: nothing is divided by
     0.
@@ -262,11 +262,12 @@ def _slopes(task: PointToPoint, least: float = 1e-9) -> np.ndarray:
 
 
 def assumed_bounds(task: PointToPoint) -> RigidBounds:
-    """The same, and what the other limits come to: of torque and deflection where nothing swings.
+    """Return the declared bounds, narrowed to what the other limits come to.
 
-    Of all else, as of one's own quantities, what the fastest plain cycloid within them reaches. So
-    a limit that is nowhere in the way changes nothing. ValueError where no cycloid is so slow that
-    it keeps them, and nothing else limits the joint.
+    Limits of torque and deflection count as where nothing swings. All else, such as a user's own
+    quantities, counts as what the fastest plain cycloid within them reaches. So a limit that is
+    nowhere in the way changes nothing. ValueError where no cycloid is so slow that it keeps them,
+    and nothing else limits the joint.
     """
     declared = declared_bounds(task)
     needed = _Needed.along(task)
@@ -306,7 +307,7 @@ def assumed_bounds(task: PointToPoint) -> RigidBounds:
 
 
 def _least_cycloid(task: PointToPoint, limits: Sequence[Limit]) -> float:
-    """How long the fastest plain cycloid takes that keeps limits [s], within some per cent.
+    """Return the duration of the fastest plain cycloid that keeps limits [s], within some per cent.
 
     Infinite where none does.
     """
@@ -347,7 +348,7 @@ def largest_deflection(task: PointToPoint) -> float:
 
 
 def _torque_limits(limits: Iterable[Limit], joints: int) -> list[list[float]]:
-    """What limits the torque of every joint."""
+    """Return what limits the torque of every joint."""
     torques: list[list[float]] = [[] for _ in range(joints)]
     for limit in limits:
         for joint in range(joints):
@@ -360,7 +361,7 @@ def _torque_limits(limits: Iterable[Limit], joints: int) -> list[list[float]]:
 
 
 class _Needed(NamedTuple):
-    """What a unit acceleration takes where nothing swings: torque by joint, static deflection.
+    """Torque by joint and static deflection that a unit acceleration takes if nothing swings.
 
     And the torque by friction of a unit speed, by joint; without what holds the joints at rest.
     """

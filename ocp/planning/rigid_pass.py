@@ -1,4 +1,4 @@
-"""How soon a machine that does not swing can follow a task's path within its limits.
+"""The least time in which a machine that does not swing can follow a path within its limits.
 
 A bound from below that needs no solver: from rest, the largest speed at every place of the path is
 that of a pass forwards, as fast as the limits let it speed up, and of one backwards, as fast as
@@ -57,12 +57,12 @@ class LimitedRows(NamedTuple):
     upper: Array
 
     def backwards(self) -> LimitedRows:
-        """The same rows from the last place to the first, where braking is speeding up."""
+        """Return these rows from the last place to the first, where braking is speeding up."""
         turned = LimitedRows(*(part[:, ::-1] for part in self))
         return turned._replace(slope=-turned.slope)
 
     def and_(self, more: LimitedRows) -> LimitedRows:
-        """These rows and others."""
+        """Return these rows and others."""
         return LimitedRows(*map(np.concatenate, zip(self, more)))
 
 
@@ -88,7 +88,7 @@ def least_duration(task: PointToPoint, arrives_at_rest: bool) -> float:
 
 
 def values_at_rest(task: PointToPoint, limit: Limit) -> Array:
-    """What a limited quantity is at rest, at the start and at the target, shape (rows, 2)."""
+    """Return a limited quantity's values at rest, at start and target, shape (rows, 2)."""
     return _Values(task, [limit], False, places=2).at(0.0, 0.0)
 
 
@@ -155,7 +155,7 @@ class _Values:
 
 
 def _functions(plant: Plant, limits: Sequence[Limit]) -> tuple[ca.Function, ca.Function]:
-    """What pushes the modes by place, speed, acceleration; values by these, W and W''."""
+    """Build the modes' pushes by place, speed, acceleration, and values by these, W and W''."""
     x = ca.SX.sym("x", 3 + 2 * plant.modes)
     path = JointMotion(*ca.vertsplit(x[:3]))
     W, ddW = (ca.vertsplit(part) for part in ca.vertsplit(x[3:], plant.modes))

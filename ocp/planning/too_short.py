@@ -1,4 +1,4 @@
-"""What no solver has to be asked: a task that not even a joint without vibration can do."""
+"""Tasks that no solver has to be asked: not even a joint without vibration can do them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ not quite linear, and the bound is a sum over places."""
 
 
 def arrives_at_rest(task: PointToPoint, residual_limit: float) -> bool:
-    """Whether the tip is at rest before and after the move, in all that a task asks for."""
+    """Return whether the tip is at rest before and after the move, in all that a task asks for."""
     return (
         residual_limit == 0
         and task.initial is None
@@ -57,7 +57,7 @@ def refuse_too_short(task: PointToPoint, at_rest: bool = False) -> None:
 
 
 def _needed(task: PointToPoint, at_rest: bool, rounds: int = 12) -> str:
-    """How wide the only limit has to be at least, in words; nothing where no number tells that.
+    """Say how wide the only limit has to be at least; nothing where no number tells that.
 
     The least duration falls with a power of the size, which follows from two sizes.
     """

@@ -80,7 +80,7 @@ def check_motion(
 def _refuse_difference(
     profile: JointProfile, motion: _Comparison, start: float, target: float, duration: float
 ) -> None:
-    """ValueError where a motion is not at rest at the ends, or its derivatives are wrong.
+    """Refuse a motion that is not at rest at the ends, or whose derivatives are wrong.
 
     What cruises may have no acceleration at any of the fractions: the move's own scale counts too.
     """
@@ -118,7 +118,7 @@ def _refuse_wrong(
     what: str,
     remedy: str,
 ) -> None:
-    """ValueError where the first values, those at the ends first, are not as expected."""
+    """Refuse values of which the first, those at the ends first, are not as expected."""
     # Share of a quantity's largest value by which it may differ from what it has to be.
     tolerance = 1e-6
     allowed = tolerance * max(float(np.abs(values).max()), scales[quantity], 1e-9)

@@ -80,7 +80,7 @@ class JointProfile(ABC):
         return f"{self.name} of {self.amount}"
 
     def refuse_no_choice(self) -> None:
-        """ValueError where the profile has a single motion, and so nothing to choose."""
+        """Refuse a profile that has a single motion, and so nothing to choose."""
         if self.size == 0:
             raise ValueError(
                 f"the {self.label} has one motion for a move, and nothing to choose; give a "

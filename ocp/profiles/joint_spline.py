@@ -75,7 +75,7 @@ class JointSpline(JointProfile):
 
     @property
     def shortest_part(self) -> float:
-        """Between two knots, or a knot and an end."""
+        """Shortest distance between two knots, or a knot and an end."""
         return float(np.diff([0.0, *self.knots, 1.0]).min())
 
     def breaks(self, duration: float) -> tuple[float, ...]:

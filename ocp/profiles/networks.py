@@ -82,7 +82,7 @@ class CycloidOfUnits(TermProfile, Cycloid):
 
     @property
     def plain(self) -> NDArray[np.float64]:
-        """No weight, and the units side by side."""
+        """Coefficients of the plain motion: no weight, and the units side by side."""
         return self._assemble(0.0, "first")
 
     def box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -83,7 +83,7 @@ def _fitted(
 
 
 def _mzv(frequency: float, damping_ratio: float) -> Impulses:
-    """Three impulses, three eighths of a period apart."""
+    """Return three impulses, three eighths of a period apart."""
     outer = 1 - math.sqrt(0.5)
     weights = [outer, 1 - 2 * outer, outer]
     return _apart(0.75, weights, frequency, damping_ratio)

@@ -279,7 +279,7 @@ def _largest(tips: Array, rates: Array) -> Array:
 
 
 def outermost(tables: Sequence[Array]) -> list[int]:
-    """Which rows have the largest absolute product with some vector, in one of the tables.
+    """Return which rows have the largest absolute product with some vector, in one of the tables.
 
     Rows of three numbers and more are all kept.
     """

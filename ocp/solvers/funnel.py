@@ -288,7 +288,7 @@ class _Descent:
         return _TriedSteps(step, promised, sharper, trial, for_f, good)
 
     def _sharper(self, step: Steps, promised: Array) -> Flags:
-        """Which rows go on to the next stage with this step."""
+        """Return which rows go on to the next stage with this step."""
         rows = self.going
         width = self.width(rows)
         little = np.abs(promised) <= self.fine * width * np.abs(self.model.objective)

@@ -79,7 +79,7 @@ class Ipopt(Solver):
 
     @property
     def own_options(self) -> dict[str, str | int | float]:
-        """These options by IPOPT's own names."""
+        """Options by IPOPT's own names."""
         return {
             "tol": self.tolerance,
             "max_iter": self.iterations,

@@ -92,7 +92,10 @@ class Program:
         bound: float | None = None,
         minimise: Mapping[str, float] = LEAST_ENERGY,
     ) -> Self:
-        """Within the task's limits and one of the residual [m], the least energy or another sum."""
+        """Return the program of least energy, or another sum, within the task's limits.
+
+        The residual [m] has a limit as well.
+        """
         limits = Limit.of_residual(residual_limit, self.task.plant.tip_unit), *self.task.limits
         return self.asking(limits=limits, bound=bound, minimise=minimise, offset=0.0)
 

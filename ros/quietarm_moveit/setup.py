@@ -1,4 +1,4 @@
-"""How colcon installs the package."""
+"""Install the package by colcon."""
 
 from setuptools import find_packages, setup
 

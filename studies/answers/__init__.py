@@ -1,1 +1,1 @@
-"""What is read: answers in files, judged anew, coefficients of others, and names of profiles."""
+"""Answers that are read: from files, judged anew, coefficients of others, names of profiles."""

@@ -34,7 +34,7 @@ _WINDOW = "residual_window_s"
 
 @dataclass(frozen=True)
 class Found:
-    """What a file holds: coefficients, what it claims of each motion, columns of no use.
+    """Content of a file: coefficients, what it claims of each motion, columns of no use.
 
     And the residual window [s] of what it claims, where it says so.
     """
@@ -101,7 +101,7 @@ def _uncounted(columns: Sequence[Column], text: bool) -> Sequence[Column]:
 
 
 def _coefficients(columns: Sequence[Column]) -> list[int]:
-    """Which columns are coefficients, in their order: by their names, or those of one matrix."""
+    """Return which columns are coefficients, in order: by their names, or those of one matrix."""
     numbered = dict[int, int]()
     matrices = dict[str, list[int]]()
     names = [column.name.lower() for column in columns]

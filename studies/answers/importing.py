@@ -155,7 +155,7 @@ def _not_beaten(F: Array, task: PointToPoint) -> NDArray[np.bool_]:
 def _claims(
     stated: Array, figures: Array, judge: Callable[[int], tuple[float, float]], task: PointToPoint
 ) -> list[str]:
-    """How what a file states compares; where fixed steps differ from it, CVODES has the word."""
+    """Say how a file's figures compare; where fixed steps differ from them, CVODES decides."""
     objectives = [FIGURES[name] for name in RESIDUAL_AND_ENERGY]
     least = np.array([always_agrees_within(figure.name, task) for figure in objectives])
     differ = (~np.isnan(stated) & ~agrees(stated, figures, least)).any(axis=1)

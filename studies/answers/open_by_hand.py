@@ -1,4 +1,4 @@
-"""What a move by hand begins with: the plan, the front or the sweep of a file."""
+"""Open what a move by hand begins with: the plan, the front or the sweep of a file."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _solver_of(record: Record) -> Solver:
 
 
 def is_file(what: str) -> bool:
-    """Whether this names a file or a folder of answers, and no plant."""
+    """Return whether this names a file or a folder of answers, and no plant."""
     path = Path(what)
     machine = path.suffix == ".json" and format_of(path) == "quietarm-machine"
     return path.suffix in (".json", ".zarr") and not machine

@@ -1,4 +1,4 @@
-"""What is read from files: a front, whose figures are checked against the plant; plans."""
+"""Read answers from files: a front, whose figures are checked against the plant; plans."""
 
 from __future__ import annotations
 

@@ -156,7 +156,7 @@ def reported_runs(folder: Path) -> pd.DataFrame | None:
 
 
 def not_reported_again(results: Results, reported: pd.DataFrame | None) -> int:
-    """How many runs of an earlier report are not among the results: a report of these loses them.
+    """Count the runs of an earlier report that a report of these results would lose.
 
     The arguments are the results and what `reported_runs` gave.
     """
@@ -167,7 +167,7 @@ def not_reported_again(results: Results, reported: pd.DataFrame | None) -> int:
 
 
 def _identities(table: pd.DataFrame) -> pd.DataFrame:
-    """What tells the runs of a table apart; the gradient's candidates are no budget."""
+    """Return what tells the runs of a table apart; the gradient's candidates are no budget."""
     by_candidates = table["gradients"] == 0
     return pd.DataFrame(
         {
@@ -185,7 +185,7 @@ def _with_labels(table: pd.DataFrame, *columns: str) -> pd.DataFrame:
 
 
 def brief_report(results: Results) -> Report:
-    """What a terminal shows: a narrow table and a verdict for each problem."""
+    """Return the report for a terminal: a narrow table and a verdict for each problem."""
     columns = ["method", "runs", GAP, _P, _STILL, "seconds"]
     names = [problem.name for problem in results.problems]
     tables: dict[str, Any] = {
@@ -228,7 +228,7 @@ def _windows(results: Results) -> str:
 
 
 def _repeated(results: Results) -> dict[str, list[str]]:
-    """By problem, what methods found the same from every seed."""
+    """Return by problem the methods that found the same from every seed."""
     return {
         problem.name: [
             bench_label(m) for m in results.methods if results.is_repeated(problem.name, m)

@@ -1,4 +1,4 @@
-"""What a bench is asked for, as its jobs."""
+"""Jobs of a bench, made of what it is asked for."""
 
 from __future__ import annotations
 

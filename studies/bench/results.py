@@ -66,7 +66,7 @@ class Run:
 
     @property
     def copies_reference(self) -> bool:
-        """Whether all its points are motions of the reference front: it searched for none."""
+        """Return whether all points copy the reference front's motions: it searched for none."""
         # share of the box by which a run's motion may differ from the reference motion that it
         # copies: decimals that were cut, or a small shift. Neighbours on the reference fronts are
         # 2e-4 to 9e-3 of it apart in the median, so that what a search finds between them is no
@@ -82,11 +82,11 @@ class Run:
 
     @cached_property
     def history(self) -> History:
-        """What it lacked of the reference front's hypervolume, and had cost, at each mark."""
+        """Hypervolume that the run lacked of the reference front's, and its cost, at each mark."""
         return self.history_of(HYPERVOLUME)
 
     def history_of(self, indicator: Indicator) -> History:
-        """What it lacked by an indicator, and had cost, at each mark."""
+        """Return what the run lacked by an indicator, and had cost, at each mark."""
         marks = self.front.history
         scores = scores_on_the_way(self.front, self.problem.reference(), indicator)
         counts_candidates = derivative_free(self.method)
@@ -105,7 +105,7 @@ class Run:
 
     @cached_property
     def scores_between(self) -> dict[str, float]:
-        """The same with motions between its points."""
+        """Scores of the run with motions between its points."""
         return self.problem.reference().scores(filled(self.front))
 
 
@@ -136,7 +136,7 @@ class Results:
 
     @classmethod
     def of_jobs(cls, fronts: Mapping[Job, Front], imported: Sequence[Front] = ()) -> Results:
-        """Those of jobs, and recorded runs of other libraries, which name a problem of the jobs."""
+        """Make results of jobs, and of recorded runs of other libraries on the jobs' problems."""
         labels = [label for label, _ in {(job.label, job.budget) for job in fronts}]
         several = {label for label in labels if labels.count(label) > 1}
         runs = [
@@ -151,12 +151,12 @@ class Results:
 
     @cached_property
     def problems(self) -> tuple[NamedProblem, ...]:
-        """Those that have runs, by name."""
+        """Problems that have runs, by name."""
         return tuple({run.problem.name: run.problem for run in self.runs}.values())
 
     @cached_property
     def methods(self) -> tuple[str, ...]:
-        """Those that have runs."""
+        """Methods that have runs."""
         return tuple(sorted({run.method for run in self.runs}))
 
     def of(self, problem: str, method: str) -> list[Run]:
@@ -187,11 +187,11 @@ class Results:
 
     @property
     def imported(self) -> int:
-        """How many runs are not of this bench."""
+        """Number of runs that are not of this bench."""
         return sum(run.imported for run in self.runs)
 
     def is_repeated(self, problem: str, method: str) -> bool:
-        """Whether a method found the same from every seed: its runs are one, not independent.
+        """Return whether a method found the same from every seed: its runs are not independent.
 
         By the residuals and energies of the fronts' points, not by what is computed from them.
         """
@@ -204,14 +204,14 @@ class Results:
     def histories(
         self, problem: str, method: str, indicator: Indicator = HYPERVOLUME
     ) -> list[History]:
-        """Those of the runs of a method on a problem, by the hypervolume or another indicator."""
+        """Return histories of a method's runs on a problem, by hypervolume or another indicator."""
         runs = self.of(problem, method)
         if indicator is HYPERVOLUME:
             return [run.history for run in runs]
         return [run.history_of(indicator) for run in runs]
 
     def missing(self, problem: str, method: str, by: str = "seconds") -> tuple[Array, Array]:
-        """Where the missing share changes, in processor seconds or evaluations, for every run.
+        """Return where the missing share changes, in processor seconds or evaluations, by run.
 
         Returns
         -------
@@ -237,7 +237,7 @@ class Results:
     def hits(
         self, problem: str, method: str, targets: Sequence[float], by: str = "seconds"
     ) -> Array:
-        """Where each run first missed no more than each target, as `running_times.hits`."""
+        """Return where each run first missed no more than each target, as `running_times.hits`."""
         return hits(self.histories(problem, method), targets, by)
 
     def expected_running_time(
@@ -269,7 +269,7 @@ class Results:
 
 
 def _is_one_front(runs: Sequence[Run]) -> bool:
-    """Whether several runs have the same points, in residual and energy."""
+    """Return whether several runs have the same points, in residual and energy."""
     # points of two fronts, scaled to the reference front, that differ by no more are the same:
     # nearer the reference fronts are not known
     tolerated = 1e-5
@@ -315,7 +315,7 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
 
 
 def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
-    """ValueError where a point is not in the problem's box."""
+    """Refuse a front with a point that is not in the problem's box."""
     lower, upper = problem.profile.box(problem.bound)
     table = front.coefficients
     for row, column in beyond(table, lower, upper):
@@ -327,7 +327,7 @@ def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
 
 
 def derivative_free(method: str) -> bool:
-    """Whether all of a method's work is candidates simulated without derivatives."""
+    """Return whether all of a method's work is candidates simulated without derivatives."""
     named = NamedMethod.read(method)
     return not (named.by_gradient or named.polish)
 
@@ -349,12 +349,12 @@ def _method(job: Job, several: set[str]) -> str:
 
 
 def lacking(scores: Any, indicator: Indicator) -> Any:
-    """What scores lack to the best that there is: 1 where more is better, else 0."""
+    """Return what scores lack to the best that there is: 1 where more is better, else 0."""
     return 1.0 - scores if indicator.more_is_better else scores
 
 
 def column_of(indicator: Indicator) -> str:
-    """What an indicator lacks is called so in tables."""
+    """Return the heading in tables of what an indicator lacks."""
     if indicator is HYPERVOLUME:
         return MISSING
     return f"missing_{indicator.name}" if indicator.more_is_better else indicator.name

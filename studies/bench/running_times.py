@@ -20,7 +20,7 @@ reached."""
 
 
 class History(NamedTuple):
-    """What a run lacked and had cost at each of its marks.
+    """The history of a run: what it lacked and had cost at each of its marks.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class History(NamedTuple):
 
 
 def hits(histories: Iterable[History], targets: Sequence[float], by: str = "seconds") -> Array:
-    """Where each run first missed no more than each target, shape (runs, targets).
+    """Return where each run first missed no more than each target, shape (runs, targets).
 
     Infinite where it never did; a mark without a value reaches none.
     """

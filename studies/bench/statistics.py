@@ -1,4 +1,4 @@
-"""Which differences between methods are more than chance: ranks, exact tests, effect sizes."""
+"""Tests whether methods differ by more than chance: ranks, exact tests, effect sizes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def attainable_by_holm(least: Array) -> Array:
 
 
 def say_power(runs: int, methods: int) -> str:
-    """What so many runs of so many methods can show, said before they are done."""
+    """Say what so many runs of so many methods can show, before they are done."""
     pairs = comb(methods, 2)
     if pairs == 0:
         return "one method alone is compared with none"
@@ -68,12 +68,12 @@ def say_power(runs: int, methods: int) -> str:
 
 
 def _runs_needed(pairs: int, least: Callable[[int], float]) -> int:
-    """From how many runs on so many pairs of one kind can have a p by Holm below `ALPHA`."""
+    """Return from how many runs on so many pairs can have a Holm-adjusted p below `ALPHA`."""
     return next(runs for runs in range(2, 1000) if pairs * least(runs) < ALPHA)
 
 
 def say_power_of(runs: Iterable[tuple[str, str]]) -> str:
-    """What runs, each a problem and a method, can show: the fewest of one, and most methods."""
+    """Say what runs, each a problem and a method, can show: the fewest of one, most methods."""
     counts = defaultdict[str, Counter[str]](Counter)
     for problem, method in runs:
         counts[problem][method] += 1
@@ -282,7 +282,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
 
 
 def _same(known: Mapping[str, Mapping[str, Array]], first: str, second: str) -> bool:
-    """Whether two methods have the same values on all problems."""
+    """Return whether two methods have the same values on all problems."""
     return all(
         np.array_equal(values[first], values[second], equal_nan=True) for values in known.values()
     )

@@ -1,4 +1,4 @@
-"""How long a line will take: hours are refused unless --yes is typed, and minutes are announced."""
+"""Estimate how long a line will take: hours need --yes, and minutes are announced."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def refuse_endless(number: int, what: str, seconds: float, *, yes: bool) -> None
 
 
 def seconds_of_solve(profile: JointProfile) -> float:
-    """How long a solve takes [s], roughly.
+    """Return roughly how long a solve takes [s].
 
     Six coefficients take 0.05 s; the time rises with a power of their number: of the square where
     they enter linearly (28 terms of a polynomial take 1 s), and faster where they do not (31

@@ -17,7 +17,7 @@ from quietarm.ocp.checks import clipped, listed, nearest, quoted, words_of_error
 
 @dataclass(frozen=True)
 class FunctionOfFile:
-    """Where a function is: its file, which is run, and its name there.
+    """Place of a function: its file, which is run, and its name there.
 
     A worker gets these words and runs the file itself.
     """

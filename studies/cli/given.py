@@ -1,4 +1,4 @@
-"""What was typed of a command, and the plant, the task or the grid of tasks that it describes."""
+"""Read what was typed of a command: the plant, the task or the grid of tasks."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ class Given:
         return {name: self._context.params[name] for name in names}
 
     def typed(self, name: str) -> bool:
-        """Whether an option was typed."""
+        """Return whether an option was typed."""
         return self._context.get_parameter_source(name) is ParameterSource.COMMANDLINE
 
     def is_command(self, *names: str) -> bool:
-        """Whether it was typed of one of these commands."""
+        """Return whether what was typed is one of these commands."""
         return self._context.command.name in names
 
     @property
@@ -82,7 +82,7 @@ class Given:
         return self.read_of_plant(RESIDUAL_LIMIT, plant)
 
     def read_of_plant(self, name: str, plant: Plant) -> Any:
-        """What an option says that is in the plant's units; None where it was not typed."""
+        """Read an option that is in the plant's units; None where it was not typed."""
         text = self._context.params[name]
         try:
             if text is None:
@@ -104,7 +104,7 @@ class Given:
             raise click.BadParameter(str(error), param_hint="'--drive'") from None
 
     def read_place(self, plant: Plant) -> dict[str, float]:
-        """Where a move is in the grid of a sweep: a value of each axis that was typed."""
+        """Read where a move is in the grid of a sweep: a value of each axis that was typed."""
         typed = [name for name in OF_MOVES if self.typed(name)]
         values = {name: self.read_of_plant(name, plant) for name in typed}
         return single_values(values | parse_parameters(plant, self.parameters))

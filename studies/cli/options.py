@@ -68,13 +68,13 @@ class Command(click.Command):
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Its own options and those of all commands."""
+        """Return the command's own options and those of all commands."""
         help_option = super().get_params(ctx)[-1]
         return [*self.own_params, *COMMON, help_option]
 
     @property
     def own_params(self) -> list[click.Parameter]:
-        """Its own arguments and options, with limits of quantities of one's own."""
+        """Arguments and options of the command, with limits of the user's own quantities."""
         params = list(self.params)
         names = [param.name for param in params]
         if LIMITS[-1].name in names:
@@ -272,7 +272,7 @@ def _solver_option(of_kinds: Mapping[str, Option], all_have_it: bool) -> click.O
 
 
 def _type_of(entry: Option) -> Any:
-    """How an option of a solver is read: a number in its unit, or one of several words."""
+    """Return how an option of a solver is read: a number in its unit, or one of several words."""
     if entry.kind is float:
         return Parsed(entry.word, partial(parse_usual, entry.unit, with_article(entry.word)))
     return Named(entry.name.replace("_", " "), entry.words) if entry.words else entry.kind

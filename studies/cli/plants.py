@@ -45,7 +45,7 @@ def parse_plant(name: str) -> Kind:
 
 
 def choose_kind(named: Kind | None, of_file: Mapping[str, type[Plant]] | None) -> Kind:
-    """What PLANT names, or else the only plant of a plant file."""
+    """Return what PLANT names, or else the only plant of a plant file."""
     if named is not None:
         return named
     if not of_file:
@@ -80,7 +80,7 @@ def build_plant(kind: Kind, values: Mapping[str, Any]) -> Plant:
 
 
 def recorded_of(kind: Kind, changed: Collection[str]) -> Recorded | None:
-    """How the frequencies of an identified machine were recorded, unless other ones are set."""
+    """Return how an identified machine's frequencies were recorded, unless other ones are set."""
     if not isinstance(kind, Identified) or any(is_modal(kind.plant, name) for name in changed):
         return None
     return kind.recorded

@@ -1,4 +1,4 @@
-"""What is typed: quantities with units, as 30deg, -pi/2, 60deg/s, 1mm, 800ms, 10%, and their forms.
+"""Read what is typed: quantities with units, such as 30deg, -pi/2, 60deg/s, 10%, and their forms.
 
 Every function raises ValueError with a message for the user.
 """
@@ -223,7 +223,7 @@ def _two(
     otherwise: str,
     fits: Callable[[S, T], bool] = lambda first, second: True,
 ) -> Callable[[str], tuple[S, T]]:
-    """What reads two values with a mark between them that fit each other.
+    """Return a reader of two values with a mark between them that fit each other.
 
     `otherwise` says what a text is not, and how it is given.
     """
@@ -259,7 +259,7 @@ _state = _two(
 
 
 def _of_drive(joint: str, otherwise: str) -> Callable[[str], tuple[float, float]]:
-    """What reads the torque, or the force, that a drive gives at a speed."""
+    """Return a reader of the torque, or the force, that a drive gives at a speed."""
     torque, speed = (
         partial(parse_quantity, unit=unit.of(joint), what="one") for unit in (EFFORT, SPEED)
     )

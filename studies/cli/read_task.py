@@ -175,6 +175,6 @@ def _needed(given: Given, name: str, plant: Plant | Robot) -> tuple[float, ...]:
 
 
 def _shows_rows(given: Given) -> bool:
-    """Whether the answer has rows of figures, beside which a plant's notes stand."""
+    """Return whether the answer has rows of figures, beside which a plant's notes stand."""
     table = given.is_command("evaluate") and isinstance(given.coefficients, Path)
     return given.is_command("plan", "evaluate") and not table

@@ -37,7 +37,7 @@ def needed_path(given: Given, robot: Robot) -> GeometricPath:
 
 
 def path_of(given: Given, robot: Robot) -> GeometricPath | None:
-    """Through the points of --path, or from --start straight in the joints or in space.
+    """Make the path through the points of --path, or from --start straight in joints or space.
 
     None without any.
     """
@@ -69,7 +69,7 @@ def _waypoints(given: Given) -> tuple[int, int] | None:
 
 
 def _blended(given: Given, robot: Robot) -> GeometricPath:
-    """Straight between the points of --path, with round corners."""
+    """Make the path straight between the points of --path, with round corners."""
     given.refuse(["path_tolerance"], "is for a spline, and --blend states how round corners are")
     words = given.blend.split(",")
     radii = [parse_quantity(word, "m", "a radius of --blend") for word in words]
@@ -85,7 +85,7 @@ def _blended(given: Given, robot: Robot) -> GeometricPath:
 
 
 def _tolerance(given: Given, robot: Robot) -> float | None:
-    """How far a path may be from the lines between its points [rad or m], if that was typed."""
+    """Read how far a path may be from the lines between its points [rad or m], if it was typed."""
     text: str | None = given.path_tolerance
     if text is None:
         return None
@@ -101,7 +101,7 @@ def _tolerance(given: Given, robot: Robot) -> float | None:
 
 
 def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
-    """By inverse kinematics from --start to --line-to, or by --line-by."""
+    """Make the line by inverse kinematics from --start to --line-to, or by --line-by."""
     given.refuse(["target"], "is where joints go; a line ends at --line-to or by --line-by")
     if given.line_to is not None:
         given.refuse(["line_by"], "is in place of --line-to")
@@ -120,7 +120,7 @@ def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
 
 
 def line_note(given: Given, plant: RobotOnPath) -> str | None:
-    """How straight the link goes for which a line was typed."""
+    """Say how straight the link goes for which a line was typed."""
     if given.line_to is None and given.line_by is None:
         return None
     kinematics = plant.robot.kinematics(given.link)
@@ -142,7 +142,7 @@ def _numbers(
 
 
 def _following_words(robot: Robot) -> str:
-    """Which joints have no position of their own."""
+    """Say which joints have no position of their own."""
     names = [f"{name} follows {entry.leader}" for name, entry in robot.followers.items()]
     return f" ({', '.join(names)})" if names else ""
 

@@ -1,4 +1,4 @@
-"""What an option may be: quantities with units, names, files that are read or written."""
+"""Types of options: quantities with units, names, files that are read or written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When a tool may act after each compared motion: at several errors, and within their range."""
+"""Times when a tool may act after compared motions: at several errors, and within their range."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ERRORS = (0.0, 0.02, 0.05, 0.10)
 
 @dataclass(frozen=True)
 class ActingInBand:
-    """When a tool may act after a motion.
+    """The time when a tool may act after a motion.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class ActingInBand:
 
 
 def refuse_still(task: PointToPoint) -> None:
-    """ValueError if nothing of a task's plant vibrates, so that there is no frequency to err in."""
+    """Refuse a task of whose plant nothing vibrates: there is no frequency to err in."""
     if not FreeVibration(task.plant, task.target).modes:
         raise ValueError(
             f"plant {task.plant.name!r} has no frequency to err in: nothing of it vibrates; leave "

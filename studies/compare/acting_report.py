@@ -1,4 +1,4 @@
-"""What a plant asks of compared motions: who may act first, and at what energy and force."""
+"""Report who of compared motions may act first, and at what energy and force."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is used today in place of a plan: the cycloid, S-curves, input shapers, ruckig, toppra.
+"""Baselines, used today in place of a plan: cycloid, S-curves, input shapers, ruckig, toppra.
 
 A baseline is made for the duration of a task, or takes the shortest one within the task's limits.
 """

@@ -133,7 +133,7 @@ def judge_motion(
 
 
 def refuse_other_moves(tasks: Mapping[str, PointToPoint], any_duration: bool = False) -> None:
-    """ValueError unless tasks are one move; limits, errors and residual windows may differ.
+    """Refuse tasks that are not one move; limits, errors and residual windows may differ.
 
     So may durations, if any will do.
     """

@@ -63,7 +63,7 @@ class RunsOfMethod:
 
     @property
     def by_gradient(self) -> bool:
-        """Whether the gradient found them, so that the points lie on a line."""
+        """Return whether the gradient found the runs, so that the points lie on a line."""
         return is_gradient(self.runs[0].front.record.method)
 
     @property
@@ -134,7 +134,7 @@ class Comparison:
         return tuple(run for group in self.groups for run in group.runs)
 
     def above_best(self, points: Array) -> Array:
-        """By what share the energies of points exceed the best front's within their residuals."""
+        """Return the share of energy of points above the best front's within their residuals."""
         return points[:, 1] / within(self.best_front, points[:, 0]) - 1
 
 
@@ -326,13 +326,13 @@ def _refuse_other_function(front: Front, first: Front, name: str, first_name: st
 
 
 def differ_in_window_alone(task: PointToPoint, other_task: PointToPoint) -> bool:
-    """Whether two tasks have another residual window, and are one task but for that."""
+    """Return whether two tasks differ in the residual window, and in nothing else."""
     alike = replace(task, residual_window=other_task.residual_window)
     return bool(task_difference(task, other_task)) and not task_difference(alike, other_task)
 
 
 def grouped(fronts: Sequence[Front]) -> dict[str, list[int]]:
-    """Which fronts are runs of one method with one set of settings, by what tells it apart."""
+    """Return which fronts are runs of one method with one set of settings, by its label."""
     groups: dict[str, list[int]] = {}
     for i, front in enumerate(fronts):
         stated = {name: value for name, value in _settings(front).items() if value is not None}

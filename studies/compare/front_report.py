@@ -151,7 +151,7 @@ def _spread_of(group: RunsOfMethod, figure: Figure, level: float) -> str:
 
 
 def _shown(table: pd.DataFrame) -> pd.DataFrame:
-    """What a page has room for: the window stands below the table."""
+    """Return the columns that a page has room for: the window stands below the table."""
     return table.drop(columns=_WINDOW).dropna(axis=1, how="all")
 
 

@@ -144,7 +144,7 @@ def compare_plans(
 
 
 def _durations(durations: str | None, task: PointToPoint) -> str:
-    """How long baselines take; ValueError where nothing says how short their own times are."""
+    """Return which durations baselines take; ValueError if nothing says how short theirs are."""
     if durations is None:
         return OWN if task.band is not None and task.limits else PLANS
     if durations not in DURATIONS:
@@ -237,7 +237,7 @@ def _cells(
 
 
 def shown(table: pd.DataFrame) -> pd.DataFrame:
-    """What a page has room for; residuals in whole thousandths of a millimetre: 0 is rest."""
+    """Return a table as a page has room for; residuals in whole thousandths of a mm: 0 is rest."""
     lengths = [column for column in table if str(column).endswith("[mm]")]
     rounded = table.round(dict.fromkeys(lengths, 3))
     rounded.columns = [_shortened(str(column), rounded.columns) for column in rounded.columns]
@@ -255,7 +255,7 @@ def _shortened(heading: str, others: Iterable[str]) -> str:
 
 
 def remarks(motions: Sequence[ComparedMotion], unit: str = "rad") -> list[str]:
-    """Why a motion is missing, and which joints turn back."""
+    """Say why a motion is missing, and which joints turn back."""
     # a joint that goes back by more [rad] is said to
     least_turn = 1e-4
     reasons: dict[str, list[str]] = {}
@@ -320,7 +320,7 @@ def plans_report(task: PointToPoint, motions: Sequence[ComparedMotion]) -> Repor
 
 
 def _words_of_way(plant: Plant) -> list[str]:
-    """What is assumed of a tip whose way a plant does not say."""
+    """Say what is assumed of a tip whose way a plant does not say."""
     if plant.has_path or plant.tip_reach is not None:
         return []
     return [f"{plant.name} does not say where its tip goes: it is taken to arrive with the joint"]

@@ -75,7 +75,7 @@ def toppra_motion(
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Without toppra's own log, which repeats what is raised here."""
+    """Silence toppra's own log, which repeats what is raised here."""
     log = logging.getLogger("toppra")
     level = log.level
     log.setLevel(logging.CRITICAL + 1)
@@ -90,7 +90,7 @@ def _way_of(task: PointToPoint) -> Any:
     from toppra.interpolator import AbstractGeometricPath
 
     class Way(AbstractGeometricPath):
-        """From the start, 0, to the target, 1."""
+        """Way from the start, 0, to the target, 1."""
 
         @property
         def path_interval(self) -> Array:
@@ -123,7 +123,7 @@ def _along(task: PointToPoint, shares: Any) -> tuple[Array, Array, Array]:
 
 
 def _constraints(task: PointToPoint, limits: Sequence[Limit]) -> list[Any]:
-    """What toppra takes in the place of limits."""
+    """Return what toppra takes in the place of limits."""
     from toppra.constraint import (
         DiscretizationType,
         JointAccelerationConstraint,

@@ -1,4 +1,4 @@
-"""What the paper claims, in its order, each with a table of what decides it."""
+"""Claims of the paper, in its order, each with a table of what decides it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Outcome = tuple[Any, pd.DataFrame]
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """What became of a claim, and the table that decides it."""
+    """The verdict on a claim, and the table that decides it."""
 
     claim: str
     holds: bool
@@ -45,7 +45,7 @@ class Verdict:
 
     @property
     def word(self) -> str:
-        """In a word."""
+        """Verdict in a word."""
         return "holds" if self.holds else "does not hold"
 
 

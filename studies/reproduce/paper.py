@@ -1,4 +1,4 @@
-"""What the paper prints: conditions, coefficients and energies of its Tables 1 to 6."""
+"""Values that the paper prints: conditions, coefficients and energies of its Tables 1 to 6."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Case:
 
     @property
     def search_label(self) -> str:
-        """What texts call its search."""
+        """Label of its search in texts."""
         return PRESETS[self.search].label
 
 

@@ -1,4 +1,4 @@
-"""What `quietarm reproduce` shows and writes: the paper's tables and figures, systems, claims."""
+"""Report of `quietarm reproduce`: the paper's tables and figures, systems, claims."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ Work = dict[Piece, Callable[[], Any]]
 
 @dataclass(frozen=True)
 class Effort:
-    """How thoroughly the paper is recomputed.
+    """The effort with which the paper is recomputed.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class Effort:
 
     @property
     def searched(self) -> list[tuple[Case, Input]]:
-        """What is searched, conditions and inputs: those that take long first."""
+        """Conditions and inputs that are searched: those that take long first."""
         chosen: list[tuple[Case, Input]] = [(row.condition, row.terms) for row in ROWS]
         if self.full:
             chosen += [(case, case.earlier[1]) for case in CONDITIONS]
@@ -118,7 +118,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All that `recompute_paper` computes."""
+    """The paper as it was recomputed, with all that `recompute_paper` computes."""
 
     effort: Effort
     searched: Mapping[tuple[Case, Input], Searched]
@@ -149,7 +149,7 @@ class Reproduction:
         return self.answers[Piece("free motion", case)]
 
     def check(self, case: Case) -> CrossCheck:
-        """Its front by both solvers."""
+        """Return the front of a case by both solvers."""
         return self.answers[Piece("both solvers", case)]
 
     @cached_property
@@ -223,7 +223,7 @@ def recompute_paper(
 
 
 def number_of_pieces(effort: Effort) -> int:
-    """How many pieces of work there are."""
+    """Count the pieces of work."""
     return len(_work(effort, None))
 
 
@@ -320,7 +320,7 @@ def _checked(case: Case, points: int) -> CrossCheck:
 
 
 def _robust(case: Case, starts: int) -> Plan | str:
-    """Within 5 % of the plain cycloid's residual whatever the frequency; or why that cannot be."""
+    """Plan within 5 % of the plain cycloid's residual at every frequency; or say why it fails."""
     task = replace(case.task, uncertainty=Uncertainty(FREQUENCY_ERROR))
     limit = tolerated_residual(case.task)
     try:

@@ -1,4 +1,4 @@
-"""What the paper's searches find for a move, seed by seed, judged at the paper's residual."""
+"""Results of the paper's searches for a move, seed by seed, judged at the paper's residual."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Searched:
 
     @cached_property
     def level(self) -> float:
-        """That residual."""
+        """Residual at which the searches are judged."""
         terms = self.which if isinstance(self.which, int) else SIX_TERMS
         return residual_level(self.case, min(terms, SIX_TERMS))
 
@@ -50,7 +50,7 @@ class Searched:
 
     @property
     def seconds(self) -> list[float]:
-        """What each seed took."""
+        """Seconds that each seed took."""
         return [front.record.seconds for front in self.fronts]
 
     @cached_property

@@ -1,4 +1,4 @@
-"""How good moves between the cells of a sweep are, without solving anything.
+"""Judge moves between the cells of a sweep, without solving anything.
 
 Fixed steps rank random moves, many in one call; CVODES judges those that they rank worst.
 """
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Between:
-    """What moves between the cells leave and cost: the worst of some random ones, by CVODES.
+    """Residual and cost of moves between cells: the worst of some random ones, by CVODES.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Between:
 
     @property
     def keeps_limits(self) -> bool:
-        """Whether all of them keep their limits."""
+        """Return whether all of the moves keep their limits."""
         return self.of_limits <= 1 + OVERRUN
 
     @property
@@ -80,7 +80,7 @@ class Between:
 
     @property
     def remedy(self) -> str:
-        """How moves between the cells come to keep their limits."""
+        """Words on how moves between the cells come to keep their limits."""
         # a margin is advised that is this much larger than the worst excess of these
         spare = 1.5
         share = ceil(100 * spare * (self.of_limits - 1))
@@ -168,7 +168,7 @@ def _ranks(
 def _figures(
     tasks: Sequence[PointToPoint], profile: JointProfile, coefficients: Array
 ) -> list[dict[str, float]]:
-    """The same by fixed steps for moves of one plant; the energy in joules."""
+    """Return figures by fixed steps for moves of one plant; the energy in joules."""
     # so many times the solver's steps, because a limit may be broken between its nodes
     finer = 3
     steps = finer * first_steps(max(tasks, key=lambda task: task.duration), profile)

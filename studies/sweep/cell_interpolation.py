@@ -70,7 +70,7 @@ class Interpolation:
             self.orders[(self.orders == 0) & usable[self._first([*boxes], order)]] = order
 
     def _find_usable(self, order: int, marks: NDArray[np.int32]) -> NDArray[np.bool_]:
-        """Whether windows of cells have plans and no jumps, by the place of their first cell."""
+        """Return whether windows of cells have plans and no jumps, by their first cell's place."""
         sizes = [min(order, len(axis)) for axis in self.axes]
         inner = tuple(range(len(sizes), 2 * len(sizes)))
         planned = np.isfinite(self.cells).all(axis=-1)
@@ -97,7 +97,7 @@ class Interpolation:
         return self.of(self.cells, places)
 
     def of(self, cells: Array, places: Array) -> Array:
-        """The same of other values that the cells have, such as energies."""
+        """Interpolate other values that the cells have, such as energies."""
         return np.array([self._at(place, cells) for place in places])
 
     def _at(self, place: Array, cells: Array) -> Array:
@@ -121,7 +121,7 @@ class Interpolation:
 
 
 def _lagrange_weights(nodes: Array, at: float) -> Array:
-    """What each node's value counts in the polynomial through all of them, at a place."""
+    """Return the weight of each node's value in the polynomial through all of them, at a place."""
     off_diagonal = ~np.eye(len(nodes), dtype=bool)
     distances = np.subtract.outer(nodes, nodes)
     ones = np.ones_like(distances)

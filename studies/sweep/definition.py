@@ -1,4 +1,4 @@
-"""What is asked of a sweep, and what its dataset holds."""
+"""Definition of a sweep: what is asked of it, and what its dataset holds."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True)
 class PlanSettings:
-    """How every cell of a sweep is planned, as its dataset states it.
+    """Settings by which every cell of a sweep is planned, as its dataset states them.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class PlanSettings:
 
     @classmethod
     def of(cls, residual_limit: float | None, bound: float | None, solver: Solver) -> PlanSettings:
-        """From neighbours, by a solver; ValueError where a number is out of range."""
+        """Make settings by which cells start from neighbours; ValueError if out of range."""
         if residual_limit is None:
             residual_limit = 0.0
         limit = not_negative("residual limit", residual_limit, "m")
@@ -100,7 +100,7 @@ class PlanSettings:
 
     @cached_property
     def solver(self) -> Solver:
-        """What solves, with all of its options."""
+        """Solver with all of its options."""
         solver = stated_solver(self.solved_by)
         if solver is None:
             known = listed(SOLVERS)
@@ -109,13 +109,13 @@ class PlanSettings:
 
     @property
     def from_neighbours(self) -> bool:
-        """Whether a cell starts from a neighbour."""
+        """Return whether a cell starts from a neighbour."""
         return self.starts == 1
 
 
 @dataclass(frozen=True)
 class Definition:
-    """What is asked of a sweep.
+    """The definition of a sweep.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ def fronts_figure(store: Store) -> Figure:
 
 
 def _head(figure: Figure, store: Store) -> None:
-    """What is seen of a grid: how many cells have a plan, its energies, and what they leave."""
+    """Write the heading of a grid: how many cells have a plan, its energies, what they leave."""
     task = store.definition.grid.task
     plant = ", ".join([moved(task), *limit_words(task)])
     spans = [f"{label} {words}" for label, words in figure_spans(store)]
@@ -130,7 +130,7 @@ def _over_one(store: Store, axis: Axis) -> Figure:
 
 
 def _variables(store: Store) -> list[tuple[str, Array, float]]:
-    """What is shown and known: labels, values that are no less than the least, the least."""
+    """Return what is shown and known: labels, values no less than the least, the least."""
     task = store.definition.grid.task
     shown, scale = tip_scale(task.plant.tip_unit)
     residual = residual_label(task.plant.tip_unit, task.residual_window)
@@ -182,7 +182,7 @@ def _states(
     figure: Figure, panels: NDArray[np.object_], x: Array, y: Array, store: Store,
     places: list[tuple[int, ...]],
 ) -> None:  # fmt: skip
-    """How cells ended, in colours of their own."""
+    """Draw how cells ended, in colours of their own."""
     # how cells ended, in the order of `STATES`; told apart in print by their lightness as well
     colours = (PALE, PLAN.colour, SKY, RED, PINK, BROWN, GREY)
     status = store.read(STATUS)

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LearnedSet:
-    """What recordings of some moves tell of a whole dataset.
+    """A whole dataset corrected by recordings of some of its moves, and what these told.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ def _add(moves: list[ExecutedMove], now: ExecutedMove) -> None:
 
 
 def _check(library: MoveLibrary) -> None:
-    """ValueError where a dataset is no set of moves of one plant."""
+    """Refuse a dataset that is no set of moves of one plant."""
     definition = library.store.definition
     of_plant = [name for name in library.grid.names if name not in OF_MOVES]
     if of_plant:

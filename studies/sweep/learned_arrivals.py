@@ -15,7 +15,7 @@ from quietarm.ocp.task import ModalState
 
 @dataclass(frozen=True)
 class LearnedArrivals:
-    """What was learned from recordings of some moves of a grid, for all of them.
+    """Deviations learned from recordings of some moves of a grid, for all of its moves.
 
     Attributes
     ----------

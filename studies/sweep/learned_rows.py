@@ -1,4 +1,4 @@
-"""What recordings of some moves tell of a dataset, on the screen."""
+"""Sentence and rows on what recordings of some moves tell of a dataset."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Row = tuple[str, str]
 
 
 def set_sentence(learned: LearnedSet, plant: Plant) -> str:
-    """What the recorded moves left, what of it changes, and how well others are predicted."""
+    """Say what the recorded moves left, what of it changes, and how well others are predicted."""
     words = f"left {with_unit(max(learned.left), plant)} at most"
     rates = [
         f"{new / (2 * pi):.4g} Hz, model {model / (2 * pi):.4g} Hz"

@@ -48,7 +48,7 @@ class MoveLibrary:
         self.interpolation = Interpolation(axes, coefficients)
 
     def has(self, place: Array) -> bool:
-        """Whether there are coefficients at a place, a value for each axis."""
+        """Return whether there are coefficients at a place, a value for each axis."""
         return bool(np.isfinite(self.interpolation(place[None])).all())
 
     def energies(self, places: Array) -> Array:

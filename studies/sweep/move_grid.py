@@ -107,12 +107,12 @@ class MoveGrid:
 
     @property
     def cells(self) -> int:
-        """How many moves there are."""
+        """Number of moves."""
         return math.prod(self.shape)
 
     @property
     def hours(self) -> float:
-        """How long a core takes to plan them, roughly."""
+        """Hours that a core takes to plan the moves, roughly."""
         # of six terms, without ranges of errors
         seconds_of_cell = 0.005
         return seconds_of_cell * self.cells / 3600
@@ -137,7 +137,7 @@ class MoveGrid:
         return replace(plant, **{name: at[name] for name in at if name not in OF_MOVES})
 
     def _plants_and_targets(self) -> Iterator[tuple[Plant, float]]:
-        """Where the moves end, by what decides how slowly the plant swings there."""
+        """Yield plants and targets of moves, by what decides how slowly the plant swings there."""
         axes = [axis for axis in self.axes if axis.name not in ("start", "duration")]
         most = 41 if len(axes) <= 2 else 7  # values of an axis, the ends among them
         for values in product(*(_thinned(axis.values, most) for axis in axes)):
@@ -146,7 +146,7 @@ class MoveGrid:
 
 
 def _thinned(values: tuple[float, ...], most: int) -> tuple[float, ...]:
-    """At most so many of the values, spread evenly with both ends."""
+    """Return at most so many of the values, spread evenly with both ends."""
     places = np.unique(
         np.linspace(
             0,

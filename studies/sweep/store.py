@@ -147,7 +147,7 @@ class Store:
         return DIGEST in self.dataset
 
     def _digest_of(self, values: NDArray[Any]) -> int:
-        """Of a variable's part that was computed, as an answer to what was asked."""
+        """Return the digest of a variable's computed part, as an answer to what was asked."""
         content = self.dataset.attrs["sweep"].encode() + np.ascontiguousarray(values).tobytes()
         return int.from_bytes(hashlib.sha256(content).digest()[:7], "little")
 
@@ -196,7 +196,10 @@ class Store:
             ) from None
 
     def note(self, name: str) -> Any:
-        """What an attribute holds; empty where there is none, and FileFormatError if it is none."""
+        """Return the entries of an attribute; empty where there is none.
+
+        FileFormatError if it holds no table.
+        """
         with _damage_told(self.path):
             text = self.dataset.attrs.get(name, "{}")
             note = json.loads(text)
@@ -206,7 +209,7 @@ class Store:
             return note
 
     def kept(self, name: str) -> dict[str, Any]:
-        """What `keep` has kept; empty where that was changed since."""
+        """Return what `keep` has kept; empty where that was changed since."""
         with suppress(FileFormatError):
             note = self.note(name)
             if note.pop(DIGEST, None) == self._digest_of_note(note):
@@ -247,7 +250,7 @@ def _lay_out(path: Path, definition: Definition) -> None:
 
 
 def _arrays(definition: Definition) -> dict[str, dict[str, Any]]:
-    """What zarr is told of the axes, the variables and the digests."""
+    """Return what zarr is told of the axes, the variables and the digests."""
     grid = definition.grid
     variables = definition.variables
     arrays: dict[str, dict[str, Any]] = {}

@@ -19,7 +19,7 @@ DURATIONS = {"gantry": 1.017, "picker": 0.314}  # of ZVD over ruckig
 
 
 def drive_of(machine, recorded):
-    """What a user knows of a machine's drive: loops, belt, rotor and dry friction."""
+    """Return the drive of a machine as its user knows it: loops, belt, rotor and dry friction."""
     servo = machine.servo
     return Drive(
         position_loop=servo.position_gain,

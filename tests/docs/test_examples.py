@@ -51,7 +51,7 @@ STARTED = "README-0"
 
 
 def started(*words):
-    """What a process prints that ends well and says nothing else."""
+    """Return the output of a process that ends well and says nothing else."""
     ran = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=600)
     assert (ran.returncode, ran.stderr) == (0, "")
     return ran.stdout

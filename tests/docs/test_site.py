@@ -55,7 +55,7 @@ words = extension("whole_words")
 
 @pytest.fixture
 def app():
-    """What the extension asks of Sphinx."""
+    """Return what the extension asks of Sphinx."""
     builder = SimpleNamespace(get_relative_uri=lambda page, other: f"{Path(other).name}.html")
     return SimpleNamespace(srcdir=ROOT, builder=builder)
 
@@ -620,7 +620,7 @@ FILM = (5.4, 10)
 
 
 def inches_and_points(file):
-    """How wide a picture is on paper, and how high its smallest letters are."""
+    """Return how wide a picture is on paper, and how high its smallest letters are."""
     if file.startswith("data:") or file.endswith(".gif"):
         return FILM
     with Image.open(Path(url2pathname(urlsplit(file).path))) as image:

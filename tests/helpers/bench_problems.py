@@ -1,4 +1,4 @@
-"""What the tests of a bench run: a problem, two others, and methods."""
+"""Parts of a bench for its tests: a problem, two others, and methods."""
 
 import numpy as np
 

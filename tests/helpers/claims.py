@@ -70,7 +70,7 @@ def stated_in(path):
 
 
 def _programs(cell, following):
-    """What is computed in a cell, in its solutions, and in the cell that follows a text."""
+    """Return what is computed in a cell, its solutions, and the cell that follows a text."""
     own = [cell.source] if cell.cell_type == "code" else []
     solved = [solution["code"] for solution in solutions(cell)]
     announced = [following.source] if following and following.cell_type == "code" else []
@@ -86,13 +86,13 @@ def _plain(text):
 
 
 def _is_shown(text, shown):
-    """Whether an output, rounded to the digits of the text, is that number."""
+    """Return whether an output, rounded to the digits of the text, is that number."""
     value = float(_plain(text))
     decimals = len(_plain(text).partition(".")[2])
     return any(abs(abs(number) - abs(value)) <= 0.5000001 * 10.0**-decimals for number in shown)
 
 
 def _is_given(text, given):
-    """Whether a program has that number, maybe in another unit."""
+    """Return whether a program has that number, maybe in another unit."""
     value = abs(float(_plain(text)))
     return any(abs(value - scale * number) <= 1e-9 * value for number in given for scale in SCALES)

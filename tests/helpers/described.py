@@ -17,7 +17,7 @@ _draw = pylabtools.print_figure
 
 
 def alternative(figure):
-    """What a figure shows: title, axes and curves, as far as they have names; else its words."""
+    """Say what a figure shows: title, axes and curves, if they have names; else its words."""
     boxes = [*figure.legends, *filter(None, (ax.get_legend() for ax in figure.axes))]
     names = dict.fromkeys(text.get_text() for box in boxes for text in box.get_texts())
     parts = [figure.get_suptitle(), "; ".join(filter(None, map(_panel, figure.axes)))]

@@ -40,7 +40,7 @@ Answer = dict[str, float | list[float]]
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked, and how closely its answer and its peaks are held."""
+    """Question, with the tolerances to which its answer and its peaks are held."""
 
     ask: Callable[[], Answer]
     relative: float = SOLVED
@@ -83,7 +83,7 @@ def link(**options: Any) -> qa.PointToPoint:
 
 
 def arm(**options: Any) -> qa.PointToPoint:
-    """The same of the arm."""
+    """Return a move of the arm."""
     return paper_move(ARM, math.pi / 2, 0.8, **options)
 
 

@@ -35,7 +35,7 @@ class Hostile(Plant):
 
     @property
     def label(self):
-        """What reports call it."""
+        """Name in reports."""
         return LABEL
 
     @property
@@ -52,7 +52,7 @@ class Hostile(Plant):
         return [JointMotion(*path) for _ in NAMES]
 
     def torques(self, path, W, dW, ddW):
-        """Those of an inertia, and of the swing in the first joint."""
+        """Return torques of an inertia, and of the swing in the first joint."""
         rigid = [path.acceleration * ca.DM(1.0) for _ in NAMES]
         return [rigid[0] + path.acceleration + 0.1 * ddW[0], *rigid[1:]]
 
@@ -61,5 +61,5 @@ class Hostile(Plant):
         return [0.1 * W[0]]
 
     def tip_speeds(self, path, W, dW):
-        """How fast it is."""
+        """Return the speed of the tip."""
         return [0.1 * dW[0]]

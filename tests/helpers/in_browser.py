@@ -106,14 +106,14 @@ def still(page, time=1.0):
 
 
 def arm(page):
-    """What is drawn of the structure."""
+    """Return what is drawn of the structure."""
     return page.evaluate(
         "[...document.querySelectorAll('#scene path')].map(x => x.outerHTML).join()"
     )
 
 
 def curves(page):
-    """What is drawn over time."""
+    """Return what is drawn over time."""
     return page.evaluate(
         "[...document.querySelectorAll('#panels path')].map(x => x.outerHTML).join()"
     )

@@ -36,7 +36,7 @@ def inks_of(figure: Figure) -> set[str]:
 
 
 def has_a_scale(artist: Artist) -> bool:
-    """Whether its colours are values: of an area, or of points that are coloured by a quantity."""
+    """Return whether colours are values: of an area, or of points coloured by a quantity."""
     by_value = isinstance(artist, Collection) and artist.get_array() is not None
     return by_value or isinstance(artist, OVER_AN_AREA)
 

@@ -236,7 +236,7 @@ class Truth:
         return solved.y
 
     def accelerations(self, q, v, a, p, dp):
-        """Of the springs, and torques of the driven joints."""
+        """Return accelerations of the springs, and torques of the driven joints."""
         masses, bias = self._dynamics(self._positions(q, p), self._rates(v, dp))
         of_springs = masses[np.ix_(self.sprung, self.sprung)]
         between = masses[np.ix_(self.sprung, self.driven)]

@@ -94,7 +94,7 @@ def pages(notebook):
 
 @contextmanager
 def kernel():
-    """What executes notebooks: a kernel that loads modules once for all of them."""
+    """Yield what executes notebooks: a kernel that loads modules once for all of them."""
     client = NotebookClient(new_notebook(), timeout=600, coalesce_streams=True, record_timing=False)
     with client.setup_kernel():
         yield client
@@ -143,7 +143,7 @@ def _pictures_for_phones(notebook, path):
 
 
 def narrow_name(path, picture):
-    """Of the file for phones of a notebook's picture, in `NARROW`."""
+    """Return the name of the file for phones of a notebook's picture, in `NARROW`."""
     return f"{path.stem.partition('_')[0]}-{hashlib.sha256(picture).hexdigest()[:16]}.png"
 
 

@@ -27,7 +27,7 @@ def run(method, task=None, **settings):
 
 @cache
 def found(method, task=None, **settings):
-    """The same, done once for all tests that ask for it."""
+    """Return the front of a search, done once for all tests that ask for it."""
     return run(method, task, **settings)
 
 

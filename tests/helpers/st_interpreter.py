@@ -330,7 +330,7 @@ def run_by_matiec(source, calls, size=1):
 
 
 def as_row(outputs):
-    """The same row of a call of a `Block`."""
+    """Return the row of a call of a `Block`."""
     row = [float(outputs[name]) for name in ("Busy", "Done", "Error")]
     for name in ("Position", "Velocity", "Acceleration"):
         value = outputs[name]

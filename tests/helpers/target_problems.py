@@ -30,7 +30,7 @@ class Constrained(Targets):
 
 
 def state_of(algorithm):
-    """What a swarm knows after an iteration: velocities, and the best so far."""
+    """Return what a swarm knows after an iteration: velocities, and the best so far."""
     names = ("velocities", "best_X", "best_merit", "swarm_best")
     known = {name: getattr(algorithm, name).copy() for name in names}
     return {**known, "random_state": algorithm.random_state.bit_generator.state}

@@ -136,7 +136,7 @@ class ThirdOpinion:
         )
 
     def torque(self, joint, x):
-        """Of the joint's angle, speed and acceleration and of the states, at any times."""
+        """Return the torque at joint's angle, speed and acceleration and states, at any times."""
         return self.equations(*joint, x[: self.modes], x[self.modes :])[1]
 
     def power(self, t):

@@ -11,7 +11,7 @@ pytestmark = pytest.mark.usefixtures("what_is_made_up_is_forgotten")
 
 
 def run(self, function, seed, budget):
-    """What a search does that is complete."""
+    """Search as a complete search does."""
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What a search keeps, and every indicator from it at any moment."""
+"""Archives that a search keeps, and every indicator from them at any moment."""
 
 import dataclasses
 

@@ -1,4 +1,4 @@
-"""What a person gets wrong in a plant, and what `validate` says of it."""
+"""Mistakes that a person makes in a plant, and what `validate` says of them."""
 
 import math
 

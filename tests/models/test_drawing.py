@@ -1,4 +1,4 @@
-"""How structures are drawn: the mode shape, tips where the equations have them, refusals."""
+"""Drawings of structures: the mode shape, tips where the equations have them, refusals."""
 
 import numpy as np
 import pytest

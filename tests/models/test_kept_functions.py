@@ -1,4 +1,4 @@
-"""What processes leave to the next is used if, and only if, this user's process wrote it."""
+"""Functions left by a process are used if, and only if, this user's process wrote them."""
 
 import json
 import os
@@ -40,7 +40,7 @@ class Builder:
 
 
 def built(parts=PARTS):
-    """How often a function is built where a process wants it, which computes what it should."""
+    """Count how often a function is built if a process wants it, which computes what it should."""
     build = Builder()
     function = kept_function(parts, build)
     assert float(function(1.5)) == float(Builder()()(1.5))

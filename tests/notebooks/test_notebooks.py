@@ -31,7 +31,7 @@ each_notebook = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.ste
 
 
 class Row(NamedTuple):
-    """What the table of the course says of a notebook."""
+    """Row of a notebook in the table of the course."""
 
     number: str
     title: str
@@ -55,7 +55,7 @@ def client():
 
 
 def kinds(cell):
-    """What a cell shows, without the figures themselves."""
+    """Return what a cell shows, without the figures themselves."""
     return [sorted(o.get("data", {})) or o.get("name", o.output_type) for o in cell.outputs]
 
 

@@ -1,4 +1,4 @@
-"""What stands on which slide; in a browser none is nearly blank, and nothing is cut."""
+"""Contents of slides; in a browser none is nearly blank, and nothing is cut."""
 
 import base64
 import struct
@@ -27,7 +27,7 @@ def drawn(height):
 
 
 def contents(cells):
-    """What is on every slide, without what the speaker says."""
+    """Return what is on every slide, without what the speaker says."""
     slides = []
     for cell in as_slides(cells):
         place = cell.metadata["slideshow"]["slide_type"] if "slideshow" in cell.metadata else "-"

@@ -1,4 +1,4 @@
-"""What the tests of `ocp` share: the plants, and plans that are solved once."""
+"""Fixtures that the tests of `ocp` share: the plants, and plans that are solved once."""
 
 import math
 from functools import cache

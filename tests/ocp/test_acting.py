@@ -32,7 +32,7 @@ def last_beyond(times, distances, band):
 
 
 def test_one_mode_crosses_last_where_its_closed_form_does():
-    """Of x'' + 2 zeta omega x' + omega^2 x = 0 from x = 1 mm at rest, in textbook's terms."""
+    """The closed form is that of x'' + 2 zeta omega x' + omega^2 x = 0 from x = 1 mm at rest."""
     omega, zeta = AXIS.omega1, AXIS.zeta1
     damped = omega * math.sqrt(1 - zeta**2)
     times = np.linspace(0.0, 12.0, 400_001)

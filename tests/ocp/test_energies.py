@@ -1,4 +1,4 @@
-"""What counts as energy: against SciPy, closed forms and differences, the same in every answer."""
+"""Energies, held against SciPy, closed forms and differences, the same in every answer."""
 
 import math
 import subprocess

@@ -114,7 +114,7 @@ def test_what_is_infinite_is_no_figure():
 
 
 def test_the_root_mean_square_is_that_of_the_integral(task):
-    """Of the plain cycloid's acceleration, 2 pi D / T^2 sin(2 pi t / T): its peak over sqrt 2."""
+    """The plain cycloid's acceleration, 2 pi D / T^2 sin(2 pi t / T), has its peak over sqrt 2."""
     candidate = qa.evaluate_coefficients(task, []).candidate
     peak = 2 * math.pi * task.span / task.duration**2
     assert rms("acceleration")(candidate) == pytest.approx(peak / math.sqrt(2), rel=1e-9)
@@ -277,7 +277,7 @@ def test_a_tip_that_depends_on_the_place_has_rates_by_casadi():
             return [-81.0 * W[0] - 0.05 * dW[0] - 0.5 * joint.acceleration]
 
         def torque(self, joint, W, dW, ddW):
-            """Of an inertia and the swing."""
+            """Return the torque of an inertia and the swing."""
             return 2.0 * joint.acceleration + 0.5 * ddW[0]
 
         def tips_at(self, path, W):

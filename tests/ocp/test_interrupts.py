@@ -31,7 +31,7 @@ def test_calls_side_by_side_have_memory_of_their_own():
 
 
 class PressedInItsThirdIteration(ca.Callback):
-    """What IPOPT calls in each iteration on a program of one variable."""
+    """Callback of IPOPT in each iteration on a program of one variable."""
 
     def __init__(self):
         super().__init__()

@@ -1,4 +1,4 @@
-"""What a motion leaves off its model: what CVODES finds on each perturbed plant, quickly."""
+"""Residuals off the model: what CVODES finds on each perturbed plant, quickly."""
 
 import pytest
 from robots import straight, ur5_with_bar

@@ -13,7 +13,7 @@ BLAS = ThreadpoolController().select(user_api="blas")
 
 
 def threads():
-    """How many threads each library of linear algebra has."""
+    """Return how many threads each library of linear algebra has."""
     return [library.num_threads for library in BLAS.lib_controllers]
 
 

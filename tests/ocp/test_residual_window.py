@@ -1,4 +1,4 @@
-"""How long after arrival a residual is measured: by default a whole swing of the slowest mode."""
+"""The window after arrival of a residual: by default a whole swing of the slowest mode."""
 
 import json
 import math
@@ -138,7 +138,7 @@ def test_the_longest_default_of_several_moves_is_resolved_by_all_of_them():
 
 
 def amplitude(plan):
-    """Of the free vibration on arrival, in closed form, without damping [m]."""
+    """Return the amplitude of the free vibration on arrival, in closed form, undamped [m]."""
     W, dW = np.ravel(plan.candidate.arrival)
     return math.hypot(W, dW / plan.task.plant.omega1)
 

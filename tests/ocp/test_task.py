@@ -1,4 +1,4 @@
-"""What is asked: valid tasks, and what is refused when a task is made."""
+"""Tasks that are valid, and what is refused when a task is made."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""What recipes are followed with: ways to call the command, in a folder of the test's own."""
+"""Fixtures to follow recipes: ways to call the command, in a folder of the test's own."""
 
 import pytest
 from command_fixtures import *  # noqa: F403

@@ -60,7 +60,7 @@ def own(folder):
 
 @pytest.fixture
 def captions(monkeypatch, quick_pictures):
-    """What stands above each picture that is saved."""
+    """Return what stands above each picture that is saved."""
     said = []
     whole = Figure.savefig
 

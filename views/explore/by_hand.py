@@ -106,7 +106,7 @@ class Dial(NamedTuple):
 
     @property
     def step(self) -> float:
-        """How far a slider goes by an arrow key."""
+        """Step of a slider by an arrow key."""
         return float(10 ** floor(log10((self.most - self.least) / _STEPS)))
 
     def held(self, shown: float) -> float:
@@ -340,7 +340,7 @@ class MoveByHand:
 
     @property
     def is_of_front(self) -> bool:
-        """Whether the motion is a point of the front."""
+        """Return whether the motion is a point of the front."""
         return self.front is not None and self.motion.record.method == self.front.record.method
 
     def file(self, name: str) -> str:
@@ -354,7 +354,7 @@ class MoveByHand:
 
 
 def _dial(group: str, label: str, unit: str, *ends: float) -> Dial:
-    """In the unit that is shown for one of SI, as its ends are; those of limits are the same."""
+    """Make a dial in the unit that is shown for one of SI, as its ends are; limits share ends."""
     shown, factor = _SHOWN.get(unit, (unit, 1.0))
     low, high = [factor * end for end in ends] or (_LEAST * (label != "residual"), _MOST)
     return Dial(label if unit == "-" else f"{label} [{shown}]", low, high, factor, group)

@@ -176,7 +176,7 @@ def _drawn() -> tuple[str, ...]:
 
 
 def _shown_front(traced: _Traced) -> dict[str, Any]:
-    """All that the scripts need of a front, and the coefficients of its motions."""
+    """Return all that the scripts need of a front, and the coefficients of its motions."""
     coefficients = [[*map(float, choice.plan.coefficients)] for choice in traced.move.choices]
     shown = shown_move(traced.move, _BYTES, quantities=_drawn())
     return {**shown, "coefficients": coefficients}

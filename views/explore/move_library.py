@@ -1,4 +1,4 @@
-"""What the page needs of a library of moves, such as the dataset of a sweep."""
+"""Contents of a library of moves, such as a sweep's dataset, for the page."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def serve(page: LivePage, tell: Callable[[str], object], browser: bool = True) -
 
 
 class _AbandonedError(Exception):
-    """Nobody waits for the answer any more."""
+    """Error when nobody waits for the answer any more."""
 
 
 class Answering:
@@ -85,7 +85,7 @@ class Answering:
 
 
 class Desk:
-    """Where questions wait, and the main thread answers them one after another."""
+    """Queue of questions, which the main thread answers one after another."""
 
     def __init__(self, page: LivePage) -> None:
         self.page = page

@@ -1,4 +1,4 @@
-"""What a controller leaves that interpolates between the rows or points of an exported move."""
+"""Residuals if a controller interpolates between the rows or points of an exported move."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _TOLD = 1e-3
 
 
 def note_of_rows(plan: Plan, columns: str, rate: float) -> str:
-    """What is to be said of the columns of a table, as typed."""
+    """Return the note on a table's columns, as typed."""
     return note_of_points(plan, rate, tuple(columns_of(columns, plan.task.plant)))
 
 
@@ -61,7 +61,7 @@ def note_of_points(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) 
 
 
 def note_of_calls(plan: Plan, cycle: float) -> str:
-    """How far straight lines are from the plan between the calls of what is exact at each call."""
+    """Say how far straight lines between calls are from the plan, which is exact at each call."""
     times = times_of(plan, 1 / cycle)
     if len(times) > MOST_POINTS:
         return "exact at any time"
@@ -73,13 +73,13 @@ def note_of_calls(plan: Plan, cycle: float) -> str:
 
 
 def _derivatives_in(columns: Sequence[str]) -> int:
-    """How many of `OF_POINTS` there are, each only with those before it."""
+    """Count the names of `OF_POINTS` among the columns, each only with those before it."""
     held = [name in columns for name in OF_POINTS]
     return held.index(False) if False in held else len(held)
 
 
 def interpolation_note(plan: Plan, rate: float, columns: Sequence[str] = OF_POINTS) -> str:
-    """What is left at a rate [Hz] that is too coarse, and a rate that does; else nothing.
+    """Say what a rate [Hz] that is too coarse leaves, and name one that does; else say nothing.
 
     Points as close as the solver's smallest steps are never too coarse, and not looked at.
 
@@ -164,7 +164,7 @@ def residual_through(plan: Plan, times: Array, along: Sequence[Array], interpola
 
 
 def _with_corners(times: Array, places: Array) -> FreeMotion:
-    """Straight lines between set points, whose speed turns within a short time at each of them."""
+    """Return straight lines between set points, whose speed turns shortly at each of them."""
     lengths = np.diff(times)
     speeds = np.concatenate([[0.0], np.diff(places) / lengths, [0.0]])
     turn = lengths.min() / 8

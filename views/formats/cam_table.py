@@ -51,7 +51,7 @@ class Cam(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """How a tool reads a cam, and how it interpolates between the points."""
+    """Layout of a cam for a tool, which also says how the tool interpolates between the points."""
 
     write: Callable[[Cam], str]
     interpolation: int
@@ -179,7 +179,7 @@ def _cam_of(
 
 
 def _slaves(plant: Plant, layout: str, slave: str) -> list[int]:
-    """Which joints a table has; ValueError for one that is none, or where one has to be named."""
+    """Return which joints a table has; ValueError for one that is none, or that is not named."""
     names = list(plant.joint_names)
     if slave:
         if slave not in names:

@@ -1,4 +1,4 @@
-"""How far a controller that interpolates set points is from the plan: sampled, and proven.
+"""Distance from the plan of a controller that interpolates set points: sampled, and proven.
 
 Between two set points the distance from the plan is cut into short parts. At the ends of a part it
 is computed; within, it is at most an eighth of the part's length squared, times the second

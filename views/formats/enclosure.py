@@ -158,7 +158,7 @@ def _truth(certain: NDArray[np.bool_], possible: NDArray[np.bool_]) -> Interval:
 
 
 def _is_true(a: Interval) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Where a value certainly, and possibly, is other than 0."""
+    """Return where a value certainly, and possibly, is other than 0."""
     return (a.low > 0) | (a.high < 0), (a.low != 0) | (a.high != 0)
 
 

@@ -30,12 +30,12 @@ def path_function(profile: JointProfile, plant: Plant) -> ca.Function:
 
 
 def positions_at(plant: Plant, place: float) -> list[float]:
-    """Where the joints rest at a place of the path."""
+    """Return where the joints rest at a place of the path."""
     return [float(joint.angle) for joint in plant.joints(JointMotion(place, 0.0, 0.0))]
 
 
 def title_of(plan: Plan) -> str:
-    """What moves and where, for the first line of a source."""
+    """Say what moves and where, for the first line of a source."""
     return f"{moved(plan.task)}, {move_of(plan.task)}"
 
 

@@ -105,7 +105,7 @@ class ExportSetting:
 
     @property
     def option(self) -> str:
-        """Its option on the command line."""
+        """Name of the setting's option on the command line."""
         return f"--{self.name.replace('_', '-')}"
 
     def check(self, value: Any) -> Any:
@@ -164,7 +164,7 @@ class ExportFormat(ABC):
 
     @property
     def taken(self) -> str:
-        """Which answers it takes, in words: a plan, plans or fronts."""
+        """Answers that the format takes, in words: a plan, plans or fronts."""
         nouns = [_NOUNS[kind] for kind in self.takes if kind != SEVERAL]
         if SEVERAL in self.takes:
             return joined([f"{noun}s" for noun in nouns], "or")

@@ -56,7 +56,7 @@ class GifFilm(ExportFormat):
 
 
 class Mp4Film(GifFilm):
-    """By the program ffmpeg."""
+    """Film as mp4, by the program ffmpeg."""
 
     name = "mp4"
     endings = (".mp4",)

@@ -154,7 +154,7 @@ class _Records:
 
     @cached_property
     def left(self) -> str:
-        """What the drive's interpolation leaves, in words."""
+        """Words on what the drive's interpolation leaves."""
         plan = self.plan
         if plan.candidate.inverts_drive:
             return THROUGH_DRIVE

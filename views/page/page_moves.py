@@ -1,4 +1,4 @@
-"""What is on the page: moves, the motions of each that can be chosen, and what lies beside them."""
+"""Contents of the page: moves, the motions to choose from for each, and what lies beside them."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Choice:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the tip is at rest on arrival, or as the task asks."""
+        """Return whether the tip is at rest on arrival, or as the task asks."""
         return is_at_rest(self.residual, self.plan.task)
 
 
@@ -102,7 +102,7 @@ class Move:
 
     @property
     def meaning(self) -> str:
-        """What the choices are in the grammar of pictures: their colour says it."""
+        """Meaning of the choices in the grammar of pictures: their colour says it."""
         if self.is_front and not is_gradient(self.choices[0].plan.record.method):
             return "search"
         return _plan_of(self.task)
@@ -114,7 +114,7 @@ class Move:
 
     @property
     def is_front(self) -> bool:
-        """Whether the choices are points of a front, so that each trades residual for energy."""
+        """Return whether the choices are a front's points: each trades residual for energy."""
         return self.choices[0].name == ""
 
 
@@ -158,7 +158,7 @@ def move_by_hand(plan: Plan, cycloid: Plan) -> Move:
 
 
 def _belong_together(first: Front | Plan, answer: Front | Plan) -> bool:
-    """Whether F1 and F2 mean the same, and of two fronts the limits are the same, too."""
+    """Return whether F1 and F2 mean the same for both answers, and the limits of two fronts too."""
     tasks = [first.task, answer.task]
     if not (isinstance(first, Front) and isinstance(answer, Front)):
         tasks = [replace(task, bounds={}, torque_speed=None) for task in tasks]
@@ -240,12 +240,12 @@ def _beside_front(front: Front) -> Beside:
 
 
 def _plan_of(task: PointToPoint) -> str:
-    """What a plan of a task is in the grammar of pictures."""
+    """Return the meaning of a task's plan in the grammar of pictures."""
     return "robust plan" if task.ranges else "plan"
 
 
 def _along(points: Sequence[FrontPoint]) -> list[FrontPoint]:
-    """At most so many points as are shown, evenly along the front, its ends among them."""
+    """Return at most so many points as are shown, evenly along the front, its ends among them."""
     if len(points) <= MOST_MOTIONS:
         return list(points)
     places = np.array([(point.residual, point.energy) for point in points])

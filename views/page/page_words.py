@@ -1,4 +1,4 @@
-"""What the page says of a motion: its figures, and what it trades."""
+"""Words of the page on a motion: its figures, and what it trades."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class ShownFigures:
 
     @classmethod
     def of(cls, plan: Plan, residual: float, energy: float) -> Self:
-        """Those of a motion, F1 and F2 as its front states them."""
+        """Return the figures of a motion, with F1 and F2 as its front states them."""
         values = {
             figure.name: plan.figures.get(figure.name, nan)
             for figure in figures_in(PAGE, plan.task)
@@ -67,14 +67,14 @@ class ShownFigures:
         return cells
 
     def notes(self) -> list[str]:
-        """What stands below each of the figures: the joint of the largest torque."""
+        """Notes below each of the figures: the joint of the largest torque."""
         return [
             self.peak_joint if name == QUANTITIES["torque"].peak else "" for name in self.values
         ]
 
 
 def figure_names(task: PointToPoint) -> list[str]:
-    """What the figures are, with their units."""
+    """Return the names of the figures, with their units."""
     return [_figure_name(figure, task.plant) for figure in figures_in(PAGE, task)]
 
 
@@ -88,12 +88,12 @@ def _figure_name(figure: Figure, plant: Plant) -> str:
 
 
 def spot_words(choice: Choice) -> str:
-    """Where a motion lies: "14.7 mm, 0.0334 J"."""
+    """Say where a motion lies: "14.7 mm, 0.0334 J"."""
     return f"{_residual(choice)}, {_joules(choice.energy)}"
 
 
 def swing_words(choice: Choice) -> str:
-    """What the tip does after arrival."""
+    """Say what the tip does after arrival."""
     if choice.at_rest:
         return _residual(choice)
     task = choice.plan.task
@@ -104,7 +104,7 @@ def swing_words(choice: Choice) -> str:
 
 
 def sentence(move: Move, choice: Choice) -> str:
-    """What a motion trades: residual vibration for energy, beside the stillest of its front."""
+    """Say what a motion trades: residual vibration for energy, beside the stillest of its front."""
     stillest = move.choices[0]
     if not move.is_front or choice is stillest:
         return _against_cycloid(move, choice) + _next_step(move, choice)
@@ -133,7 +133,7 @@ def _joules(energy: float, digits: int = 3) -> str:
 
 
 def _apart(first: float, second: float) -> tuple[str, str]:
-    """Two energies with as many digits as tell them apart, three at least."""
+    """Return two energies with as many digits as tell them apart, three at least."""
     least = 3
     most = 6
     for digits in range(least, most):
@@ -196,13 +196,13 @@ def _beyond(limit: Limit, peak: float, tip_unit: str) -> str:
 
 
 def _buys_stillness(choice: Choice, cycloid: Choice) -> bool:
-    """Whether a motion takes more energy than the plain cycloid, and leaves less vibration."""
+    """Return whether a motion takes more energy than the plain cycloid, but vibrates less."""
     takes_more = choice.energy > (1 + _ALIKE) * cycloid.energy
     return takes_more and choice.residual < cycloid.residual
 
 
 def _arrival(choice: Choice) -> str:
-    """What the tip does from the arrival on, as the second half of a sentence."""
+    """Say what the tip does from the arrival on, as the second half of a sentence."""
     task = choice.plan.task
     if choice.at_rest:
         return f"arrives {_residual(choice)}"
@@ -223,7 +223,7 @@ def _compared(energy: float, of_cycloid: float) -> str:
 
 
 def _next_step(move: Move, choice: Choice) -> str:
-    """What a little more residual vibration would save, by the shadow price.
+    """Say what a little more residual vibration would save, by the shadow price.
 
     Nothing where the front ends before, and no more than the front's cheapest motion saves.
     """
@@ -264,7 +264,7 @@ def _about(energy: float) -> str:
 
 
 def robust_note(task: PointToPoint) -> str:
-    """What F1 is of an uncertain task; nothing of others."""
+    """Say what F1 is of an uncertain task; nothing of others."""
     if not task.ranges:
         return ""
     scenarios = len(task.scenarios)

@@ -46,7 +46,7 @@ def unpacked(block: dict[str, Any]) -> Array:
 def needed_samples(
     times: Array, rows: Array, always: NDArray[np.intp], tolerance: float
 ) -> NDArray[np.intp]:
-    """Which samples are needed, so that straight lines between them are close to all rows.
+    """Return which samples keep straight lines between them close to all rows.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def _fewest(moved: Array, directions: Array, tolerance: float) -> Array:
 
 
 def _is_close(moved: Array, shapes: Array, tolerance: float) -> bool:
-    """Whether rows are within a distance of sums of shapes."""
+    """Return whether rows are within a distance of sums of shapes."""
     return bool(np.abs(moved - moved @ shapes.T @ shapes).max() <= tolerance)
 
 

@@ -223,7 +223,7 @@ def _mixed(colour: str, towards: float, share: float) -> str:
 def shown_move(
     move: Move, budget: float, scale: float | None = None, quantities: Sequence[str] = PANELS
 ) -> dict[str, Any]:
-    """All that the scripts need of a move, within a number of bytes.
+    """Return all that the scripts need of a move, within a number of bytes.
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def _panel(move: Move, quantity: str, values: Array) -> dict[str, Any]:
 
 
 def _names(plant: Plant, quantity: str) -> list[str]:
-    """What several curves of a quantity are called: joints, or tips."""
+    """Return the names of several curves of a quantity: joints, or tips."""
     return list(plant.joint_names) if quantity == "angle" else names_of_curves(plant, quantity)
 
 
@@ -403,7 +403,7 @@ def _content(
 
 
 def colour_name(look: Look) -> str:
-    """What the page's styles call the colour of a look."""
+    """Return the name of a look's colour in the page's styles."""
     if look.colour in OTHERS:
         return f"other-{OTHERS.index(look.colour)}"
     return next(_css_name(name) for name, meant in MEANINGS.items() if meant == look)

@@ -1,4 +1,4 @@
-"""When a tool may act, over the band that it has to stay within, for a few motions."""
+"""Times when a tool may act, over the band that it has to stay within, for a few motions."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def in_lines(words: str, letters: int) -> str:
 
 
 def letters_an_inch(size: float) -> float:
-    """How many letters of a size [points] stand on an inch."""
+    """Return how many letters of a size [points] stand on an inch."""
     return 132 / size
 
 

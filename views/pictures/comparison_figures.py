@@ -194,7 +194,7 @@ def _leave_room_below(ax: Axes, energy: float, share: float = 0.22) -> None:
 
 
 def _caption(comparison: Comparison) -> str:
-    """What the methods take at a level that all or some of them reach."""
+    """Say what the methods take at a level that all or some of them reach."""
     level = next((level for level in comparison.levels if level >= SEARCH_RESIDUAL), None)
     if level is None:
         level = comparison.levels[-1]

@@ -132,7 +132,7 @@ def _tip_unit(fronts: Sequence[Front]) -> str:
 
 
 def _names(fronts: Sequence[Front]) -> list[str]:
-    """What to call every front: its method where there are several; of several runs the seed."""
+    """Return the fronts' names: the method if there are several, the seed for several runs."""
     methods = [described(front.record.method) for front in fronts]
     several = len(set(methods)) > 1
     names = list[str]()

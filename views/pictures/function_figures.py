@@ -60,7 +60,7 @@ def draw_function_fronts(
 
 
 def facts_of(fronts: Sequence[Front]) -> str:
-    """What was searched, and by what."""
+    """Say what was searched, and by what."""
     function: Any = fronts[0].task
     return (
         f"{described(fronts[0].record.method)}: function {function.name}, "

@@ -39,7 +39,7 @@ PALE = "#E9ECF0"
 
 @dataclass(frozen=True)
 class Look:
-    """How a line looks.
+    """Appearance of a line.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ def mark_points(ax: Axes, front: Array, task: PointToPoint, corner: Sequence[flo
 
 
 def _place(name: str, residual: float, task: PointToPoint) -> str:
-    """Where a named point is, unless its name says so."""
+    """Say where a named point is, unless its name does."""
     words = tip_words(residual, task.plant.tip_unit)
     if is_at_rest(residual, task):
         words = "rest in the scenarios" if task.ranges else "rest"  # between them more may remain

@@ -1,4 +1,4 @@
-"""What a motion is, in the words of the grammar of pictures."""
+"""The meaning of a motion in the words of the grammar of pictures."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from quietarm.ocp.profiles.shaped_cycloid import ShapedCycloid
 
 
 def meaning_of(motion: Plan | Floor | JudgedMotion) -> str:
-    """Which of `MEANINGS` a motion is; another word for what is none of them, as a shaper "MZV"."""
+    """Name which of `MEANINGS` a motion is, or what else, such as a shaper "MZV"."""
     if isinstance(motion, Floor):
         return "floor"
     if is_plain_cycloid(motion):
@@ -20,7 +20,7 @@ def meaning_of(motion: Plan | Floor | JudgedMotion) -> str:
 
 
 def is_plain_cycloid(motion: Plan | JudgedMotion) -> bool:
-    """Whether a motion is the plain cycloid, whose coefficients are all zero."""
+    """Return whether a motion is the plain cycloid, whose coefficients are all zero."""
     return (
         isinstance(motion, Plan)
         and isinstance(motion.profile, CycloidPolynomial)

@@ -87,12 +87,12 @@ Motions = Sequence[Line] | Plan | Floor
 
 @interruptible
 def drawn_quantities() -> tuple[str, ...]:
-    """What can be drawn: the joint's angle, the quantities that a task may limit, and the power."""
+    """Name what can be drawn: the joint's angle, quantities that a task may limit, the power."""
     return ("angle", *sorted(QUANTITIES, key=lambda name: QUANTITIES[name].panel), "power")
 
 
 def _is_always_drawn(name: str) -> bool:
-    """Whether it is a panel of every motion; others are where a task limits them."""
+    """Return whether a quantity is a panel of every motion; others are where a task limits them."""
     return QUANTITIES[name].always_drawn if name in QUANTITIES else name == "angle"
 
 
@@ -137,7 +137,7 @@ def draw_quantity(
 
 
 def _drawn() -> list[str]:
-    """What can be drawn, with the user's own panels."""
+    """Name what can be drawn, with the user's own panels."""
     return [*drawn_quantities(), *known_panels(drawn_quantities())]
 
 
@@ -240,7 +240,7 @@ def names_of_curves(plant: Plant, quantity: str) -> list[str]:
 
 
 def _which(plant: Plant, quantity: str, curve: int) -> str:
-    """Which joint or tip a curve is of, where there are several."""
+    """Say which joint or tip a curve is of, where there are several."""
     joints = plant.joint_names
     if len(joints) > 1 and _is_of_joints(quantity):
         return f", {joints[curve]}"
@@ -248,7 +248,7 @@ def _which(plant: Plant, quantity: str, curve: int) -> str:
 
 
 def _which_tip(plant: Plant, curve: int) -> str:
-    """Which of several tips, or along which axis a tip moves that moves in space."""
+    """Say which of several tips, or the axis along which a tip moves that moves in space."""
     place = plant.tip_names[curve].removeprefix("tip_")
     if plant.tip_lines is None:
         return f", tip {place}"
@@ -269,7 +269,7 @@ def heading_of_plant(plant: Plant, quantity: str, curve: int | None = None) -> s
 
 
 def scale_of(quantity: str, tip_unit: str = "m") -> float:
-    """From the quantity's unit to the one that is shown."""
+    """Return the factor from the quantity's unit to the one that is shown."""
     return tip_scale(tip_unit)[1] if _words_and_unit(quantity)[1].is_tip_way else 1.0
 
 
@@ -377,7 +377,7 @@ def _figure_of_joints(
 
 
 def _is_of_joints(quantity: str) -> bool:
-    """Whether a quantity has a curve for each joint."""
+    """Return whether a quantity has a curve for each joint."""
     return quantity == "angle" or (quantity in QUANTITIES and QUANTITIES[quantity].of_joints)
 
 

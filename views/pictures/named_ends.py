@@ -11,7 +11,7 @@ from scipy.optimize import isotonic_regression
 
 
 class NamedEnd(NamedTuple):
-    """Where a curve ends, and the name that stands beside it."""
+    """End of a curve, and the name that stands beside it."""
 
     x: float
     y: float

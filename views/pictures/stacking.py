@@ -78,7 +78,7 @@ def stack(figure: Figure, width: float = NARROW) -> Figure | None:
 
 
 def _is_scale(ax: Axes) -> bool:
-    """Whether it is the scale of the colours of a panel."""
+    """Return whether axes are the scale of the colours of a panel."""
     return hasattr(ax, "_colorbar_info")
 
 
@@ -105,7 +105,7 @@ def _label_every_panel(panels: Sequence[Axes]) -> None:
 
 
 def _label_of(which: str, ax: Axes, panels: Sequence[Axes]) -> str:
-    """What the panels say that share an axis with this one."""
+    """Return the label of the panels that share an axis with this one."""
     together = getattr(ax, f"get_shared_{which}_axes")()
     labels = [getattr(far, f"get_{which}label")() for far in panels if together.joined(ax, far)]
     return next(filter(None, labels), "")
@@ -134,19 +134,19 @@ def _narrowed(ax: Axes, width: float) -> float:
 
 
 def _is_legend_alone(ax: Axes) -> bool:
-    """Whether a legend stands in place of a panel."""
+    """Return whether a legend stands in place of a panel."""
     return not ax.axison and not ax.has_data()
 
 
 def _height_of_drawing(ax: Axes, width: float) -> float:
-    """Of a drawing to scale that fills the width, with its title [inch]."""
+    """Return the height of a drawing to scale that fills the width, with its title [inch]."""
     across = abs(np.diff(ax.get_xlim())[0])
     upwards = abs(np.diff(ax.get_ylim())[0])
     return float(width * upwards / across) + _LINE_HIGH * 2
 
 
 def _size_of(text: Text) -> float:
-    """Of its letters [points]."""
+    """Return the size of a text's letters [points]."""
     return float(text.get_fontsize())
 
 

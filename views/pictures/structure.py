@@ -1,4 +1,4 @@
-"""Where structures are at the frames of a film, and how their parts look."""
+"""Places of structures at the frames of a film, and how their parts look."""
 
 from __future__ import annotations
 
@@ -47,23 +47,23 @@ class Structure:
 
     @cached_property
     def bent(self) -> list[DrawnPart]:
-        """What is drawn: discs, links and tips."""
+        """Parts that are drawn: discs, links and tips."""
         return self._parts(self._bent_bodies)
 
     @cached_property
     def unbent(self) -> list[DrawnPart]:
-        """The same without deflection."""
+        """Parts that are drawn, without deflection."""
         return self._parts(self._bodies(0 * self.tips))
 
     @property
     def paths(self) -> list[Array]:
-        """Where each tip is drawn, shape (frames, 2) [m]."""
+        """Path on which each tip is drawn, shape (frames, 2) [m]."""
         first = self._bent_bodies[0]
         return [part.points[:, -1] for part, body in zip(self.bent, first) if body.tip]
 
     @property
     def trail_begins(self) -> float:
-        """From when on paths of tips are drawn [s]: in space from the start, else on arrival."""
+        """Time from which paths of tips are drawn [s]: in space from the start, else on arrival."""
         task = self.line.plan.task
         return 0.0 if task.plant.in_space else task.duration
 
@@ -75,7 +75,7 @@ class Structure:
 
     @property
     def scale_words(self) -> str:
-        """How much larger deflections are drawn."""
+        """Words on how much larger deflections are drawn."""
         return "to scale" if self.scale == 1 else f"deflection x {self.scale:g}"
 
     @property

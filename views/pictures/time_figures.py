@@ -1,4 +1,4 @@
-"""When a tool may act against the energy that it takes, in a picture."""
+"""Picture of when a tool may act against the energy that it takes."""
 
 from __future__ import annotations
 

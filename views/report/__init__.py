@@ -1,4 +1,4 @@
-"""How results are reported: rows and Markdown templates, words, tables, pictures and progress."""
+"""Reports of results: rows and Markdown templates, words, tables, pictures and progress."""
 
 from quietarm.loading import attach
 

@@ -1,4 +1,4 @@
-"""When a tool may act, in words: the first line of an answer with a band."""
+"""Words on when a tool may act: the first line of an answer with a band."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from quietarm.views.tips import tip_words
 
 
 def acting_words(motion: JudgedMotion) -> str:
-    """When the tip stays within the task's band: "may act after 0.88 s: within 0.1 mm for ..."."""
+    """Say when the tip stays in the task's band: "may act after 0.88 s: within 0.1 mm for ..."."""
     task = motion.task
     acting = motion.acting
     assert acting is not None
@@ -32,7 +32,7 @@ def acting_words(motion: JudgedMotion) -> str:
 
 
 def ranges_words(ranges: Mapping[str, float]) -> str:
-    """For which errors something holds: "for frequency errors up to 5 %"."""
+    """Say for which errors something holds: "for frequency errors up to 5 %"."""
     if not ranges:
         return "without errors"
     if list(ranges) == [FREQUENCY]:

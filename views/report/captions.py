@@ -26,7 +26,7 @@ _MOST_SAID = 3
 
 
 def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
-    """What motions take and leave, by their names: "The plan takes 0.02 J and arrives at rest"."""
+    """Say what motions take and leave, by name: "The plan takes 0.02 J and arrives at rest"."""
     said = {name: (motion.energy, _said(motion)) for name, motion in motions.items()}
     residuals = [motion.residual for motion in motions.values()]
     unit = next(iter(motions.values())).task.plant.tip_unit
@@ -34,7 +34,7 @@ def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
 
 
 def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
-    """The same of motions that are compared; of an uncertain plant by their worst cases."""
+    """Say what compared motions take and leave; of an uncertain plant by their worst cases."""
     known = {judged.name: judged for judged in motions if judged.motion is not None}
     said = dict[str, tuple[float, str]]()
     residuals = [0.0]
@@ -80,7 +80,7 @@ def _spans(candidates: Sequence[JudgedMotion]) -> str:
 
 
 def _said(motion: Plan | Floor) -> str:
-    """How a motion ends, and figures of one's own."""
+    """Say how a motion ends, with the figures of the user's own."""
     return ", ".join([_ending(motion), *further_words(motion.candidate, CAPTION)])
 
 
@@ -91,7 +91,7 @@ def _named(name: str) -> str:
 
 
 def _ending(motion: Plan | Floor) -> str:
-    """How a motion ends: at rest, or what it leaves, of a robust plan in the worst case."""
+    """Say how a motion ends: at rest, or what it leaves, of a robust plan in the worst case."""
     task = motion.task
     if isinstance(motion, Plan) and motion.worst is not None:
         worst = left_words(motion.worst.residual, task)
@@ -109,7 +109,7 @@ def left_words(residual: float, task: PointToPoint) -> str:
 
 
 def verified_words(motions: Sequence[Plan | Floor]) -> str:
-    """How the figures of a picture are verified: by how much another integrator differs."""
+    """Say how a picture's figures are verified: by how much another integrator differs."""
     checks = [motion.verification for motion in motions if isinstance(motion, Plan)]
     if not checks:
         return "by CVODES"
@@ -120,7 +120,7 @@ def verified_words(motions: Sequence[Plan | Floor]) -> str:
 
 
 def caption_of_front(front: Front) -> str:
-    """What a front trades: from its stillest to its cheapest motion."""
+    """Say what a front trades: from its stillest to its cheapest motion."""
     tip_unit = front.task.plant.tip_unit
     if not front.points:
         return "No point of this front was found"
@@ -147,7 +147,7 @@ def _further(front: Front, point: FrontPoint) -> str:
 
 
 def caption_of_fronts(fronts: Sequence[Front], level: float = SEARCH_RESIDUAL) -> str:
-    """What seeds of one method take within a residual [m]."""
+    """Say what seeds of one method take within a residual [m]."""
     if len(fronts) == 1:
         return caption_of_front(fronts[0])
     within = tip_words(level, fronts[0].task.plant.tip_unit)
@@ -168,7 +168,7 @@ def spans_of_fronts(fronts: Sequence[Front], level: float) -> str:
 
 
 def caption_of_polish(polish: Polish) -> str:
-    """What polishing saves."""
+    """Say what polishing saves."""
     shares = [100 * gain.share for gain in polish.gains]
     if not shares:
         return "No point was polished"
@@ -181,7 +181,7 @@ def caption_of_cells(
     task: PointToPoint,
     more: Sequence[str] = (),
 ) -> str:
-    """How many cells of a grid have a plan, what these take and leave, and `more` that is said."""
+    """Say how many cells of a grid have a plan, what these take and leave, and `more` beside it."""
     planned = np.isfinite(energies)
     words = f"{planned.sum()} of {planned.size} moves have a plan"
     if not planned.any():

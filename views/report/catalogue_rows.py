@@ -1,4 +1,4 @@
-"""What there is to choose from in rows: plants, problems and methods, and each by itself."""
+"""Rows of what there is to choose from: plants, problems and methods, and each by itself."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _setting(setting: MethodSetting) -> Row:
 
 
 def _objective(name: str) -> str:
-    """What an objective is."""
+    """Say what an objective is."""
     figure = known_objectives()[name]
     if figure.quantity:
         label = QUANTITIES[figure.quantity].label
@@ -95,7 +95,7 @@ def _parameter(entry: Field[Any]) -> str:
 
 
 def _card(problem: NamedProblem) -> list[Row]:
-    """What the reference front says of a problem of two objectives."""
+    """Return rows of what the reference front says of a problem of two objectives."""
     if len(problem.objectives) > 2:  # a card is of a curve
         return []
     card = card_of(problem.fronts()[0])

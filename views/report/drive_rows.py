@@ -52,7 +52,7 @@ def drive_rows(plan: Plan) -> list[Row]:
 
 
 def _worst_on_drive(plan: Plan) -> list[Row]:
-    """What a robust plan leaves on the drive at the errors that are worst there.
+    """Return a row of what a robust plan leaves on the drive at the errors that are worst there.
 
     They may be others than those of the plant alone: the servo gives way to what a structure of
     another frequency does to it.
@@ -105,7 +105,7 @@ def cycle_rows(plan: Plan) -> list[Row]:
 
 
 def _cycles_on_drive(task: PointToPoint, worst: Cycle) -> list[Row]:
-    """What builds up on the drive at the worst errors."""
+    """Return a row of what builds up on the drive at the worst errors."""
     try:
         left = worst.on_drive()
     except SolverFailedError as error:
@@ -118,7 +118,7 @@ def _cycles(count: int) -> str:
 
 
 def _builds_up(task: PointToPoint, left: np.ndarray) -> str:
-    """How the vibration after each move changes from the first to the last."""
+    """Say how the vibration after each move changes from the first to the last."""
     rest = rest_of(task)
     unit = task.plant.tip_unit
     if left.max() < rest:
@@ -128,7 +128,7 @@ def _builds_up(task: PointToPoint, left: np.ndarray) -> str:
 
 
 def _servo_rows(plan: Plan) -> list[Row]:
-    """How the plan accounts for the servo."""
+    """Say how the plan accounts for the servo."""
     held, moving = plan.candidate.modes_on_drive
     words = f"{_hertz(held)} with the joint held, {_hertz(moving)} on the servo"
     if plan.candidate.inverts_drive:
@@ -142,7 +142,7 @@ def _hertz(mode: Mode) -> str:
 
 
 def _stated_rows(plant: Plant) -> list[Row]:
-    """What is known of a plant's drive, and what is not."""
+    """Return rows of what is known of a plant's drive, and of what is not."""
     drive = plant.drive
     if drive is None:
         return []

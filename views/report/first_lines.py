@@ -93,7 +93,7 @@ def plain_cycloid(task: PointToPoint) -> JudgedMotion | None:
 
 
 def _is_the_same(motion: JudgedMotion, other: JudgedMotion) -> bool:
-    """Whether two motions have the same figures to the digits that are shown."""
+    """Return whether two motions have the same figures to the digits that are shown."""
     first, second = (f"{one.energy:.3g} {one.residual:.3g}" for one in (motion, other))
     return first == second
 

@@ -100,7 +100,7 @@ def _found_line(front: Front) -> str:
 
 
 def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[str]:
-    """What the points of a front gained by the gradient."""
+    """Say what the points of a front gained by the gradient."""
     # points that the list of gains shows
     rows = 10
     shares = np.array([gain.share for gain in gains])
@@ -128,7 +128,7 @@ def polish_lines(given: Front, polished: Front, gains: Sequence[Gain]) -> list[s
 
 
 def failure_lines(front: Front, asked_for: int) -> list[str]:
-    """How many of the points asked for failed, and why; none where none did."""
+    """Say how many of the points asked for failed, and why; nothing if none did."""
     if not front.failures:
         return []
     reasons = dict[str, list[str]]()
@@ -142,12 +142,12 @@ def failure_lines(front: Front, asked_for: int) -> list[str]:
 
 
 def _residual_line(task: PointToPoint) -> str:
-    """Where and when the residuals of fronts are measured."""
+    """Say where and when the residuals of fronts are measured."""
     return f"residuals are {residual_place(task)}"
 
 
 def _range_lines(front: Front) -> list[str]:
-    """What the points leave within the range of errors, beyond its ends; nothing without one."""
+    """Say what points leave within the range of errors, beyond its ends; nothing without one."""
     task = front.task
     if not task.ranges or not front.points:
         return []
@@ -203,7 +203,7 @@ def _peaks_of(front: Front) -> list[Objective]:
 
 
 def _grid_lines(front: Front) -> list[str]:
-    """What became of the cells of a grid of limits; nothing where there was none."""
+    """Say what became of the cells of a grid of limits; nothing if there was none."""
     settings = front.record.settings
     if "grid" not in settings:
         return []
@@ -215,7 +215,7 @@ def _grid_lines(front: Front) -> list[str]:
 
 
 def _noise_lines(front: Front) -> list[str]:
-    """What the search believed, and what is true; nothing without noise."""
+    """Say what the search believed, and what is true; nothing without noise."""
     noise = front.record.settings.get("noise")
     if not isinstance(noise, float):
         return []
@@ -247,7 +247,7 @@ def _point_in_words(front: Front, point: FrontPoint) -> str:
 
 
 def _check_line(check: CrossCheck) -> str:
-    """By how much the other solver's energies differ."""
+    """Say by how much the other solver's energies differ."""
     shares = [point.difference for point in check.points if isfinite(point.other)]
     missing = len(check.points) - len(shares)
     shares = shares or [float("nan")]

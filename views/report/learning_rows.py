@@ -1,4 +1,4 @@
-"""What was learned from executed moves, on the screen: a sentence first, then what it rests on."""
+"""Sentences and rows of what executed moves taught: a sentence first, then what it rests on."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Row = tuple[str, str]
 
 
 def learning_sentence(learned: Learning) -> str:
-    """What was left, what of it changes, what the next move leaves, and what none takes away."""
+    """Say what was left, what of it changes, what the next move leaves, and what always stays."""
     plant = learned.plan.task.plant
     left = with_unit(learned.left, plant)
     floor = with_unit(learned.floor, plant)
@@ -49,7 +49,7 @@ def learning_sentence(learned: Learning) -> str:
 
 
 def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
-    """What the sentence rests on: starts, intervals, scatter, the next plan beside this one."""
+    """Return what the sentence rests on: starts, intervals, scatter, the next plan beside this."""
     plant = plan.task.plant
     moves = learned.plan.learned.moves if learned.plan.learned else ()
     recordings = sum(len(move.measured) for move in moves)

@@ -74,7 +74,7 @@ def _called(plant: Plant, name: str) -> str:
 
 
 def _instead(machine: Identified, name: str, given: Collection[str]) -> str:
-    """What a plant has of a parameter that is not identifiable, and whence."""
+    """Say what a plant has of a parameter that is not identifiable, and whence."""
     whence = "the plant's default"
     if name in machine.rough:
         whence = "by the recordings"
@@ -102,7 +102,7 @@ def refuse_defaults(plant: Plant, names: Sequence[str]) -> None:
 
 
 def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row]:
-    """How much of each ring-down a machine predicts."""
+    """Say how much of each ring-down a machine predicts."""
     rows = [("plant", plant.name)]
     for prediction in predictions:
         span = span_words(prediction.begin, prediction.end)
@@ -116,7 +116,7 @@ def prediction_rows(plant: Plant, predictions: Sequence[Prediction]) -> list[Row
 
 
 def nothing_predicted(plant: Plant, predictions: Sequence[Prediction]) -> ValueError | None:
-    """Why a machine predicts nothing of some ring-downs; None where it predicts of all."""
+    """Return the error if a machine predicts nothing of a ring-down; None if it predicts of all."""
     failed = [prediction for prediction in predictions if prediction.share <= 0]
     if not failed:
         return None
@@ -128,7 +128,7 @@ def nothing_predicted(plant: Plant, predictions: Sequence[Prediction]) -> ValueE
 
 
 def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = ()) -> list[str]:
-    """What is to be known before the intervals are believed; of a joint that is taken as held.
+    """Return notes to read before the intervals are believed; of a joint that is taken as held.
 
     `given` are the parameters that the user gave.
     """
@@ -170,7 +170,7 @@ def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = (
 
 
 def _by_amplitude(machine: Identified, name: str) -> str:
-    """Whether a parameter grows or falls with the amplitude, in words."""
+    """Say whether a parameter grows or falls with the amplitude."""
     from scipy.stats import spearmanr  # not at the top: it takes long to load
 
     if len(machine.parts) < 5:

@@ -1,4 +1,4 @@
-"""What the methods that find fronts are called."""
+"""Names of the methods that find fronts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SOLVERS = {"sqp": "SQP", "ipopt": "IPOPT"}
 
 
 def is_gradient(method: str) -> bool:
-    """Whether a method is the gradient's alone, by the name in a front or a job's label."""
+    """Return whether a method is the gradient's alone, by the name in a front or a job's label."""
     return NamedMethod.read(method).by_gradient
 
 

@@ -1,4 +1,4 @@
-"""What a motion leaves on a plant that is off its model, in one line."""
+"""Words on the residual of a motion whose plant is off its model, in one line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LOAD = "payload"
 
 
 def off_words(off: OffModel, task: PointToPoint) -> str:
-    """What is left if the plant is off: "if the frequency is 2, 5, 10 % off: 1, 3, 8 mm (...)"."""
+    """Say what is left off the model: "if the frequency is 2, 5, 10 % off: 1, 3, 8 mm (...)"."""
     by_frequency = off.residuals[FREQUENCY]
     shares = ", ".join(f"{100 * share:g}" for share in by_frequency)
     words = f"if the frequency is {shares} % off: {_lengths([*by_frequency.values()], task)}"

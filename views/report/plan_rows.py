@@ -230,7 +230,7 @@ def _verified_row(plan: Plan, verbose: bool) -> Row:
 
 
 def _full_rows(plan: Plan) -> list[Row]:
-    """What the whole equations say of a motion whose plant is a reduction of them."""
+    """Return a row of what the whole equations say of a motion whose plant reduces them."""
     figures = plan.candidate.in_full
     if figures is None:
         return []
@@ -254,7 +254,7 @@ the figure that paths are held to."""
 
 
 def _path_rows(task: PointToPoint) -> list[Row]:
-    """What to know of the path of a robot; of other plants nothing."""
+    """Return rows of what to know of a robot's path; none for other plants."""
     plant = task.plant
     return way_rows(plant.robot, plant.path) if isinstance(plant, RobotOnPath) else []
 
@@ -356,7 +356,7 @@ def _peak(figure: Figure, candidate: JudgedMotion, remedies: Mapping[str, str]) 
 
 
 def _hard_acceleration(task: PointToPoint, motion: Figures) -> str:
-    """How far the acceleration is above the plain cycloid's, where no limit is near."""
+    """Say how far the acceleration is above the plain cycloid's, if no limit is near."""
     plain = CycloidPolynomial(0).path([], task.start, task.target, task.duration)
     times = motion.peak_acceleration / abs(float(plain(task.duration / 4, order=2)))  # its peak
     limited = any(_is_near(limit, motion) for limit in task.limits)
@@ -364,7 +364,7 @@ def _hard_acceleration(task: PointToPoint, motion: Figures) -> str:
 
 
 def _hard_jerk(task: PointToPoint, motion: Figures) -> str:
-    """How fast the acceleration changes, where no limit of the jerk is near."""
+    """Say how fast the acceleration changes, if no limit of the jerk is near."""
     limit = task.limit_of("jerk")
     ramp = motion.peak_acceleration / motion.peak("jerk")
     limited = limit is not None and _is_near(limit, motion)
@@ -378,7 +378,7 @@ def _is_near(limit: Limit, motion: Figures) -> bool:
 
 
 def _choice(plan: Plan) -> Row:
-    """What makes the motion differ from others of its task, and its name."""
+    """Return the name of what sets the motion apart from others of its task, and that in words."""
     if isinstance(plan.profile, ShapedCycloid):
         impulses = len(plan.profile.impulses.times)
         shaper = f"{impulses} impulses within {plan.profile.length:.4g} s"
@@ -392,7 +392,7 @@ def _choice(plan: Plan) -> Row:
 
 
 def _terms_rows(plan: Plan) -> list[Row]:
-    """How many terms the plan chose, and what six would cost; none where they were given."""
+    """Say how many terms the plan chose, and what six would cost; nothing if they were given."""
     settings = plan.record.settings
     if CHOSEN not in settings:
         return []

@@ -182,7 +182,7 @@ def _figures(progress: SearchProgress) -> str:
 
 
 def _brief(progress: SearchProgress) -> str:
-    """The same for a bar, which has little room."""
+    """Return the progress in a few words, for a bar, which has little room."""
     shown, scale = tip_scale(progress.tip_unit)
     return (
         f"{progress.generation}/{progress.generations} {scale * progress.residual:.2g} {shown} "

@@ -178,7 +178,7 @@ def _environment() -> Environment:
 
 
 def _words(value: Any) -> Any:
-    """What a template names, within its Markdown."""
+    """Return a value as it stands in a template's Markdown."""
     if isinstance(value, int | float):
         return value
     return markdown(value if isinstance(value, str) else str(value))

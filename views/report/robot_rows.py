@@ -56,7 +56,7 @@ def robot_words(robot: Robot, path: GeometricPath, way: str = "the path") -> str
 
 
 def usual_path(robot: Robot) -> GeometricPath:
-    """Straight, all joints by one radian or as far as they go, from 0 or where they begin."""
+    """Return a straight path: all joints by a radian or as far as they go, from 0 or their end."""
     least, most = np.array(robot.ranges()).T
     start = np.clip(np.zeros(len(robot.joints)), least, most)
     up = np.minimum(start + 1.0, most)
@@ -87,7 +87,7 @@ def _mass_rows(robot: Robot) -> list[Row]:
 
 
 def _place_words(beam: Beam) -> str:
-    """Where it is clamped and lies, unless it lies along z from the link's origin."""
+    """Say where a beam is clamped and lies, unless along z from the link's origin."""
     words = ""
     if any(beam.offset):
         words += f" [{', '.join(f'{value:g}' for value in beam.offset)}] m"
@@ -223,7 +223,7 @@ def _places(robot: Robot, path: GeometricPath) -> list[_Place]:
 
 
 def way_rows(robot: Robot, path: GeometricPath) -> list[Row]:
-    """What to know of a robot's path, in one row: its file's rest, and how far it swings out."""
+    """Describe a robot's path: what else its file had, and how far its spline swings out."""
     words = [*path.remarks, *_off_straight_words(robot, path)]
     return [("path", "; ".join(words))] if words else []
 
@@ -246,7 +246,7 @@ def _off_straight_words(robot: Robot, path: GeometricPath) -> list[str]:
 
 
 def _left_out_rows(robot: Robot, path: GeometricPath, numbers: Sequence[int]) -> list[Row]:
-    """What the modes that are not followed leave after a plain cycloid, the largest first."""
+    """Say what modes that are not followed leave after a plain cycloid, the largest first."""
     swings = [swing for swing in swings_of(robot, path) if swing.number not in numbers]
     swings = sorted(swings, key=lambda swing: -swing.leaves)[:_MORE]
     if not swings:

@@ -25,7 +25,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 
 
 def drawing(draw: Callable[[], Figure]) -> Callable[[Path], object]:
-    """What draws a picture and writes it, and does nothing before."""
+    """Return a function that draws a picture and writes it, and does nothing before."""
     return lambda path: save_figure(draw(), path)
 
 

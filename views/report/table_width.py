@@ -1,4 +1,4 @@
-"""How wide a table of Markdown is on a terminal, and one that is too wide as several."""
+"""The width of Markdown tables on a terminal; a table that is too wide is cut into several."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ _MOVES = 1e-6
 
 
 def timed_rows(answer: TimedAnswer) -> list[Row]:
-    """What a trajectory takes and leaves, its peaks beside the limits, and what makes it ring."""
+    """Say what a trajectory takes and leaves, its peaks beside the limits, what makes it ring."""
     robot, motion = answer.robot, answer.motion
     points = len(motion.points)
     rows = [

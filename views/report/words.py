@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def counted(number: int, what: str) -> str:
-    """How many of what, as in 1 point, 2 points."""
+    """Return a count in words, such as 1 point, 2 points."""
     return f"{number} {what}{'s' * (number != 1)}"
 
 
@@ -50,7 +50,7 @@ def millimetres(length: float) -> str:
 
 
 def span_words(begin: float, end: float) -> str:
-    """From when to when [s], in milliseconds: a recorder's clock may count from anywhere."""
+    """Say from when to when [s], to the millisecond: a recorder's clock may count from anywhere."""
     return " to ".join(f"{round(time, 3):.12g}" for time in (begin, end)) + " s"
 
 
@@ -73,7 +73,7 @@ def window_words(window: float) -> str:
 
 
 def residual_place(task: PointToPoint) -> str:
-    """Where and when a residual is measured: "at the tip within 1 s"."""
+    """Say where and when a residual is measured: "at the tip within 1 s"."""
     tips = 1 if task.plant.tip_lines is not None else task.plant.tips  # one, by its distance
     scenarios = len(task.scenarios)
     words = "tip" if tips == 1 else f"worst of {tips} tips"
@@ -116,7 +116,7 @@ def move_of(task: PointToPoint) -> str:
 
 
 def unit_of_way(plant: Plant) -> str:
-    """What a way is in: "rad" or "m" of a joint, "of the path" of joints that follow one."""
+    """Return the unit of a way: "rad" or "m" of a joint, "of the path" if joints follow one."""
     return "of the path" if plant.has_path else WAY.of(plant.joint)
 
 
@@ -126,7 +126,7 @@ def note_lines(plant: Plant) -> list[str]:
 
 
 def state_words(state: ModalState, tip_unit: str) -> str:
-    """What rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad where the tip has that."""
+    """Say what rings, in millimetres, "W 5 mm, W' -300 mm/s", or in rad for a tip that turns."""
     shown, factor = tip_scale(tip_unit)
     W = " and ".join(f"{factor * amplitude:.3g}" for amplitude in state.W)
     dW = " and ".join(f"{factor * rate:.3g}" for rate in state.dW)
@@ -134,7 +134,7 @@ def state_words(state: ModalState, tip_unit: str) -> str:
 
 
 def energy_words(task: PointToPoint) -> list[str]:
-    """What counts as energy, as "energy copper:0.12"; nothing where that is the paper's."""
+    """Say what counts as energy, such as "energy copper:0.12"; nothing if that is the paper's."""
     return [] if task.energy == ABSOLUTE_POWER else [f"energy {task.energy.label}"]
 
 
@@ -144,7 +144,7 @@ def title_of(task: PointToPoint) -> str:
 
 
 def title_of_picture(task: PointToPoint) -> str:
-    """The same, without the limits of several joints: a line would not hold them."""
+    """Return a task's title without the limits of several joints: a line would not hold them."""
     several = len(task.plant.joint_names) > 1
     return ", ".join([moved(task), move_of(task)]) if several else title_of(task)
 

@@ -1,1 +1,1 @@
-"""What asv times from one version to the next."""
+"""Benchmarks that asv times from one version to the next."""

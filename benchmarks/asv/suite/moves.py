@@ -54,7 +54,7 @@ class Moves:
 
 
 class Processes:
-    """What a new process costs."""
+    """Processor time that a new process costs."""
 
     timer = process_time
     timeout = 300

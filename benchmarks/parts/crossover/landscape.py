@@ -1,4 +1,4 @@
-"""What a problem looks like from its values: features that may tell which kind of method wins.
+"""Features of a problem from its values, which may tell which kind of method wins.
 
 `pflacco` has such features, too; its release of this time needs a numpy older than quietarm's, so
 that those used here are computed by the lines below, each by its published definition.
@@ -84,7 +84,10 @@ def local_searches(problem: NamedProblem, random: np.random.Generator) -> dict[s
 
 
 def condition(problem: NamedProblem, place: Array) -> float:
-    """Of the energy's curvature at a motion, by central differences of a hundredth of the box."""
+    """Return the condition of the energy's curvature at a motion, by central differences.
+
+    Their step is a hundredth of the box.
+    """
     function = problem.function()
     step = 0.01 * problem.bound
     size = len(place)

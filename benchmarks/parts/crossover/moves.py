@@ -80,7 +80,7 @@ def bound_of(plant: Plant) -> float:
 
 
 def first_period(plant: Plant) -> float:
-    """Of the plant's lowest mode [s]."""
+    """Return the period of the plant's lowest mode [s]."""
     frequencies = [
         getattr(plant, name) for name in ("omega", "omega1", "omega2") if hasattr(plant, name)
     ]
@@ -99,7 +99,7 @@ def candidates(plant: Plant, random: np.random.Generator) -> Iterator[tuple[floa
 
 
 def degenerate(plant: Plant, target: float, duration: float) -> bool:
-    """Whether a move has no front to speak of."""
+    """Return whether a move has no front to speak of."""
     task = qa.PointToPoint(plant, target, duration)
     try:
         front = qa.epsilon_front(

@@ -72,7 +72,7 @@ def row_of(planned: Planned, front: qa.Front, scale: Reference) -> Row:
 
 
 def area(scaled: Array) -> float:
-    """What the 50 best points of many dominate, up to the corner."""
+    """Return what the 50 best points of many dominate, up to the corner."""
     if not len(scaled):
         return 0.0
     points = moocore.filter_dominated(scaled)
@@ -110,5 +110,5 @@ def write_rows(rows: Iterable[Row], path: Path) -> None:
 
 
 def key_of(row: Row) -> tuple[str, str, str, str, int]:
-    """What tells a run from all others, as `Planned.key`."""
+    """Return what tells a run from all others, as `Planned.key`."""
     return row["problem"], row["method"], row["settings"], row["budget"], int(row["seed"])

@@ -41,7 +41,7 @@ def write_page(results: Path, choose: Path | None = None) -> None:
 
 
 def write_plan(results: Path) -> None:
-    """How many jobs every axis has in all, and their hours, as a table."""
+    """Write a table of how many jobs every axis has in all, and their hours."""
     write_table(plan_table(results).drop(columns="done"), results / "plan.csv", 3)
 
 
@@ -103,7 +103,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
 
 
 def takes_slopes(method: str) -> bool:
-    """Whether a method of the tables takes derivatives or differences, in whole or in part."""
+    """Return whether a method takes derivatives or differences, in whole or in part."""
     return any(word in method for word in SLOPES)
 
 
@@ -131,7 +131,7 @@ def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapp
 
 
 def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None:
-    """What the row with limits says: ranges over the kinds of limit; None before any run.
+    """Return what the row with limits says: ranges over the kinds of limit; None before any run.
 
     The search is the one whose largest gap over the kinds is least.
     """

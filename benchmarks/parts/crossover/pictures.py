@@ -132,7 +132,7 @@ def map_figure(
 def narrow_map_figure(
     cells: Sequence[Mapping[str, Any]], ways: Sequence[tuple[str, str]], rival: str
 ) -> Figure:
-    """Return `map_figure` for a phone: budget by coefficients, in cells that are higher."""
+    """Draw the map for a phone: panels below each other, budget by coefficients in higher cells."""
     figure = new_figure(NARROW, 2.2 + 5.9 * len(ways))
     _head_of_map(figure, cells, ways, rival)
     axes = figure.subplots(len(ways), 1, squeeze=False)[:, 0]
@@ -204,7 +204,7 @@ def _counted(
 
 
 def _the(rival: str) -> str:
-    """What a search is compared with, as a subject."""
+    """Name what a search is compared with, as a subject."""
     return "the gradient" if rival == "gradient" else rival
 
 

@@ -1,4 +1,4 @@
-"""What is run, in which order: jobs of the bench, by axis and round.
+"""Plan of what is run, in which order: jobs of the bench, by axis and round.
 
 A round is a seed. Within a round the centre comes first, then coefficients and budget crossed, then
 the kinds of energy, then large budgets: any stop leaves every finished round balanced.
@@ -96,12 +96,12 @@ class Planned:
 
     @property
     def key(self) -> tuple[str, str, str, str, int]:
-        """What tells its run from all others."""
+        """Key that tells the run from all others."""
         return self.case.name, self.method, self.words, str(self.budget or ""), self.round
 
     @property
     def words(self) -> str:
-        """Its settings, evaluations and noise, as a table states them."""
+        """Settings, evaluations and noise, as a table states them."""
         stated = [*self.settings]
         if self.reevaluate > 1:
             stated.append(("reevaluate", self.reevaluate))
@@ -111,7 +111,7 @@ class Planned:
 
     @property
     def takes_every_number(self) -> bool:
-        """Whether it is the gradient where an integer has to be chosen."""
+        """Return whether it is the gradient where an integer has to be chosen."""
         return self.case.has_integer and self.method == "epsilon"
 
     def job(self, folder: Path) -> Job:

@@ -49,7 +49,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """Of move, coefficients and energy; files are called by it."""
+        """Name of move, coefficients and energy; files are called by it."""
         more = f"-{2 + len(self.peaks)}-objectives" if self.peaks else ""
         more += f"-{self.limits}" if self.limits else ""
         return f"{self.move.name}-{self.terms}-{self.kind}{more}"
@@ -69,7 +69,7 @@ class Case:
 
     @property
     def has_integer(self) -> bool:
-        """Whether an integer stands beside the coefficients."""
+        """Return whether an integer stands beside the coefficients."""
         return self.kind == "integer"
 
     def problem(self, folder: Path) -> NamedProblem:

@@ -50,7 +50,7 @@ def part_of(text: str) -> tuple[int, int]:
 
 
 def refuse_axes(axes: Sequence[str]) -> None:
-    """ValueError where an axis is not of the plan."""
+    """Refuse an axis that is not of the plan."""
     for axis in axes:
         if axis not in AXES:
             raise ValueError(f"no axis is called {axis!r}; give one of {', '.join(AXES)}")
@@ -73,7 +73,7 @@ def missing_of(
     axes: Sequence[str] = (),
     most_rounds: int | None = None,
 ) -> list[Planned]:
-    """What is to be run still."""
+    """Return what is to be run still."""
     plan = plan_of(results)
     done = done_keys(results)
     of_part = plan[part[0] - 1 :: part[1]]
@@ -87,7 +87,7 @@ def missing_of(
 
 
 def batches(missing: Iterable[Planned]) -> Iterator[list[Planned]]:
-    """Of so many jobs, in order."""
+    """Yield batches of so many jobs, in order."""
     remaining = iter(missing)
     while batch := list(islice(remaining, BATCH)):
         yield batch

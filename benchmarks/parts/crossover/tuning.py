@@ -32,7 +32,7 @@ Space = dict[str, optuna.distributions.BaseDistribution]
 
 
 def space_of(method: str) -> Space:
-    """What is tuned, and its ranges: settings of `quietarm list METHOD`."""
+    """Return what is tuned, and its ranges: settings of `quietarm list METHOD`."""
     share = optuna.distributions.FloatDistribution(0.0, 1.0)
     eta = optuna.distributions.FloatDistribution(1.0, 60.0, log=True)
     population = optuna.distributions.IntDistribution(12, 200, log=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def verdicts(cells: Sequence[Mapping[str, Any]], way: str) -> dict[str, Any]:
-    """Of the cells of a map that were run: how many have a verdict, and for whom."""
+    """Count the cells of a map that were run: how many have a verdict, and for whom."""
     rows = [(cell, cell["ways"][way]) for cell in cells if way in cell["ways"]]
     compared = [(cell, row) for cell, row in rows if not row["no_front"]]
     sure = [(cell, row) for cell, row in compared if row["verdict"]]

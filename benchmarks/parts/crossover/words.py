@@ -1,4 +1,4 @@
-"""How methods and budgets are called on the page."""
+"""Names of methods and budgets on the page."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Friction:
     stribeck: float = 0.01
 
     def times(self, factor: float) -> Friction:
-        """The same with its dry friction multiplied; what is viscous stays."""
+        """Return this friction with its dry part multiplied; what is viscous stays."""
         return replace(self, sliding=factor * self.sliding, breakaway=factor * self.breakaway)
 
 
@@ -135,7 +135,7 @@ class Machine:
 
     @property
     def commissioned_mass(self) -> float:
-        """All that moves [kg], as the servo knows it: with the tool as stated."""
+        """Mass of all that moves [kg], as the servo knows it: with the tool as stated."""
         beam = self.beam.length * self.beam.line_mass + sum(lump.mass for lump in self.beam.lumps)
         return self.rotor + self.carriage + beam
 

@@ -1,4 +1,4 @@
-"""What a plant pays for: when the tool may act, what still swings, force and energy."""
+"""Measures that a plant pays for: when the tool may act, what still swings, force and energy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NEVER = 0.1
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one run comes to.
+    """The outcome of one run.
 
     Parameters
     ----------

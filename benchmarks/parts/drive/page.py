@@ -81,7 +81,7 @@ class Row:
 
     @property
     def stays(self) -> bool:
-        """Whether the tool stays within the band from the end of the command on."""
+        """Return whether the tool stays within the band from the end of the command on."""
         return self.farthest_mm <= self.band_mm
 
 
@@ -118,7 +118,7 @@ class Runs:
         return acts(max(row.acts_after_s for row in self.off(machine, motion, size)))
 
     def left(self, machine: str, motion: str, size: str = "0") -> str:
-        """How far the tool is from its target after the command, the worse of both signs [mm]."""
+        """Say how far the tool is off its target after a command, the worse of both signs [mm]."""
         return length(max(row.farthest_mm for row in self.off(machine, motion, size)))
 
     def worst(self, way: str, machine: str, motion: str) -> str:
@@ -143,7 +143,7 @@ class Runs:
         return max(row.farthest_mm for row in rows) / band
 
     def hunts(self, machine: str, study: str, value: str) -> bool:
-        """Whether a servo shakes its axis with its largest force, whatever the motion."""
+        """Return whether a servo shakes its axis with its largest force, whatever the motion."""
         rows = self.where(machine=machine, study=study, value=value)
         return all(row.peak_force_n >= LARGEST[machine] for row in rows)
 
@@ -171,7 +171,7 @@ class Runs:
         return found
 
     def added(self) -> str:
-        """What the drives add to residual limits of 0.1 mm over 2, 3 and 5, as a range [mm]."""
+        """Say what the drives add to residual limits of 0.1 mm over 2, 3 and 5, as a range [mm]."""
         found = [
             0.1 * self.used(machine, "on the way", 0.1, margin) - 0.1 / margin
             for machine in MACHINES
@@ -195,7 +195,7 @@ class Runs:
         return listed(found) or "none"
 
     def shift(self, machine: str) -> str:
-        """By how much slower a structure swings while its axis moves."""
+        """Say by how much slower a structure swings while its axis moves."""
         moving, standing = (
             self.one(machine=machine, study="recording", value=way).frequency_hz
             for way in ("on the way", "light push")
@@ -234,7 +234,7 @@ class Runs:
         return table(head, rows)
 
     def table_of_ways(self, machine: str) -> str:
-        """What each way to record identifies, and what plans leave with it."""
+        """Make a table of what each way to record identifies, and what plans leave with it."""
         head = (
             "recorded", "swing [mm]", "frequency [Hz]", "damping", "plan leaves [mm]",
             "robust plan [mm]",

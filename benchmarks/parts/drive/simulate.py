@@ -59,7 +59,7 @@ class SetPoints:
 
 @dataclass(frozen=True)
 class Runs:
-    """What the cases did: a row for every tick of the servo, a column for every case.
+    """Simulated cases: a row for every tick of the servo, a column for every case.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ class _Controllers:
         self.integral = np.zeros(len(servos))
 
     def read(self, place: np.ndarray) -> np.ndarray:
-        """What the encoder says of a place."""
+        """Return what the encoder says of a place."""
         return np.round(place / self.quantum) * self.quantum
 
     def force(self, place, asked, asked_speed, asked_acceleration) -> np.ndarray:

@@ -63,7 +63,7 @@ def accurate(errors: tuple[NDArray[np.float64], ...]) -> bool:
 
 
 def by_rollout(population: NDArray[np.float64], steps: int) -> Values:
-    """The same with the peak after arrival in closed form."""
+    """Evaluate the population with the peak after arrival in closed form."""
     x = numbers(TASK)
     evaluation = Evaluator(TASK, PROFILE, steps)(population)
     arrival = evaluation.arrival[:, 0]

@@ -124,7 +124,7 @@ class Forced(BasisColumns):
         return np.concatenate([forced[..., None], states, lever], axis=-1)
 
     def _answers(self, values: Any, derivatives: bool) -> tuple[Any, Any]:
-        """What each eigenvalue makes of the acceleration at the rows, and its derivative by it."""
+        """Return each eigenvalue's answer to the acceleration at the rows, and its slope by it."""
         answers = list[Any]()
         slopes = list[Any]()
         for value in values:
@@ -144,7 +144,7 @@ class Forced(BasisColumns):
         return np.array(answers), np.array(slopes)
 
     def _derivatives(self, p: Array) -> Iterator[tuple[Array, ...]]:
-        """Of eigenvalues, residues and feed by each parameter: central differences."""
+        """Yield central differences of eigenvalues, residues and feed by each parameter."""
         share = 1e-6  # of a parameter
         for k, size in enumerate(np.maximum(np.abs(p), 1e-3)):
             change = np.zeros(len(p))
@@ -155,7 +155,7 @@ class Forced(BasisColumns):
 
 
 def _over_a_step(value: complex, step: Any, nodes: Array) -> tuple[Any, Any, Any]:
-    """How a mode grows over steps, what an acceleration adds, and that by the eigenvalue."""
+    """Return a mode's growth over steps, what an acceleration adds, and that by the eigenvalue."""
     added = 0.0
     slope = 0.0
     for c, weight, acceleration in zip(GAUSS_NODES, GAUSS_WEIGHTS, nodes):
@@ -220,7 +220,7 @@ class Driven(BasisColumns):
 
 
 def _lever(response: Response, acceleration: Array) -> Array:
-    """What an accelerometer at some distance from the joint feels (signals, rows, 1)."""
+    """Return what accelerometers feel by their distance from the joint (signals, rows, 1)."""
     return np.outer(response.kinds == "acceleration", acceleration)[..., None]
 
 

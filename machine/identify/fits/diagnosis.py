@@ -1,4 +1,4 @@
-"""Whether what a fit leaves is noise; and if it is not, the likely cause."""
+"""Decide whether what a fit leaves is noise; if it is not, name the likely cause."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def spectrum_of(time: Array, residual: Array) -> tuple[Array, Array]:
 def doubt_of(
     time: Array, residual: Array, swinging: Array, frequency: float, noise: float
 ) -> dict[str, str]:
-    """What is left beside noise: the likely cause and a warning; empty where it is noise.
+    """Name the likely cause of what is left beside noise, with a warning; empty if it is noise.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def saturated(values: Array, fitted: Array | None = None) -> NDArray[np.bool_]:
 
 
 def exceeds(values: Array, fitted: Array, flat: NDArray[np.bool_]) -> bool:
-    """Whether a swing fitted to the other samples passes what the flat ones show by far.
+    """Return whether a swing fitted to the other samples passes what the flat ones show by far.
 
     That is by more than the noise and a step of the sensor: an encoder's peaks are flat, too.
     """

@@ -43,7 +43,7 @@ class Fit:
 
     @property
     def misfit(self) -> float:
-        """What is left, as a share of the swing; of several signals the largest."""
+        """Misfit as a share of the swing; of several signals the largest."""
         size = np.sqrt((self.swinging**2).mean(axis=0))
         shares = self.residual.std(axis=0) / np.maximum(size, 1e-300)
         return float(shares.max())
@@ -108,7 +108,7 @@ def deviation_of(residual: Array, least: Array | float = 1e-300) -> Array:
 
 
 def _inflation(slopes: Array, variances: Array, count: int, signals: int) -> Array:
-    """How deviations of so many parameters grow by the unknown size of the joint's response."""
+    """Return the factors by which the unknown size of the joint's response widens deviations."""
     amplitudes = (slopes.shape[1] - count) // signals
     of_joint = count + np.arange(signals) * amplitudes
     known = np.delete(slopes, of_joint, axis=1)
@@ -189,7 +189,7 @@ def power_near(time: Array, residual: Array, frequency: float, parameters: int) 
 
 
 def _delay(residual: Array, later: Array, slopes: Array) -> float:
-    """By how much the angle is late: another parameter, where it explains much of what is left."""
+    """Return how late the angle is: another parameter, if it explains much of what is left."""
     much = 0.25  # share of the power that is left
     share, *_ = np.linalg.lstsq(slopes, later, rcond=None)
     apart = later - slopes @ share

@@ -1,4 +1,4 @@
-"""Whether a hub swings with the tip: it shifts the frequency (docs/plants.md)."""
+"""Decide whether a hub swings with the tip: it shifts the frequency (docs/plants.md)."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _doubted(fitter: PartFitter, part: Part, frequency: float, fails: bool) -> P
 
 
 def _hub_swings(fitter: PartFitter, part: Part) -> bool:
-    """Whether the hub swings as the tip does in a part, by more than an encoder's noise."""
+    """Return whether the hub swings as the tip does in a part, by more than an encoder's noise."""
     piece = fitter.piece(part)
     assert piece.angle is not None
     swing = FreeDecay(fitter.response, piece)(part.vector)[0][0, :, :2]

@@ -63,7 +63,7 @@ class PartFitter:
 
     @property
     def frequencies(self) -> Array:
-        """Of the plant's modes as they are given, with the joint at rest [Hz]."""
+        """Frequencies of the plant's modes as they are given, with the joint at rest [Hz]."""
         return np.asarray(self._modes, float) / tau
 
     def of(self, names: Sequence[str]) -> PartFitter:
@@ -172,7 +172,7 @@ class PartFitter:
         return float((noise_of(piece.values) / thinned / size).max())
 
     def _at_bound(self, part: Part, best: Fit, start: Array) -> dict[str, str]:
-        """That a parameter ends at the bound of its search; empty where none does."""
+        """Warn of a parameter that ends at the bound of its search; empty where none does."""
         lower, upper = bounds_of(self.plant, self.names, start, part.end - part.begin)
         width = np.where(upper < np.inf, upper - lower, 1.0)
         room = np.minimum(best.p - lower, upper - best.p) / width
@@ -186,7 +186,7 @@ class PartFitter:
         return {"cause": "bound", "warning": warning}
 
     def _doubt(self, part: Part, best: Fit, time: Array, noise: float) -> dict[str, str]:
-        """Why a fit of a part is doubted; empty where it is not."""
+        """Say why a fit of a part is doubted; empty where it is not."""
         if best.delay and part.hub == "moves" and best.misfit > 2 * noise:
             side = "late" if best.delay > 0 else "early"
             warning = (

@@ -1,4 +1,4 @@
-"""How a plant's signals answer its joint, by some of its parameters.
+"""The response of a plant's signals to its joint, by some of its parameters.
 
 With the joint at rest they are exponentials of the plant's eigenvalues. Where the joint moves they
 are followed through the recording by the collocation of the plans: the modes are affine in their
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 class Response:
-    """How a plant's signals answer its joint, by some of its parameters.
+    """The response of a plant's signals to its joint, by some of its parameters.
 
     Parameters
     ----------
@@ -51,11 +51,11 @@ class Response:
 
     @property
     def is_linear(self) -> bool:
-        """Whether signals answer the joint's acceleration alone, the same at every angle."""
+        """Return whether signals answer the joint's acceleration alone, the same at every angle."""
         return self._linear is not None
 
     def _state_matrix(self, plant: Plant, p: ca.SX) -> Compiled:
-        """That of the modes with the joint at rest at an angle, and its derivatives by p."""
+        """Build the modes' state matrix with the joint at rest, and its derivatives by p."""
         modes = plant.modes
         angle = ca.SX.sym("angle")
         system = modal_system(plant, JointMotion(angle, 0.0, 0.0))
@@ -125,14 +125,14 @@ class Response:
         return values[order], residues[:, order] * twice, slopes[size:, size]
 
     def _seen(self, plant: Plant, joint: JointMotion, X: ca.SX) -> ca.SX:
-        """What is recorded, a row each, of columns of the state."""
+        """Return the recorded signals, a row each, of columns of the state."""
         W, dW = (ca.vertsplit(half) for half in ca.vertsplit(X[:, 0], plant.modes))
         ddW = plant.modal_accelerations(joint, W, dW)
         seen = self._signals(plant, joint, W, dW, ddW)
         return ca.horzcat(seen, ca.jacobian(seen, X[:, 0]) @ X[:, 1:])
 
     def _signals(self, plant: Plant, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> ca.SX:
-        """What is recorded, a row each, of modal amplitudes and their rates."""
+        """Return the recorded signals, a row each, of modal amplitudes and their rates."""
         by_kind = {
             "tip": iter(plant.tips_at(joint, W)),
             "acceleration": iter(plant.tips_at(joint, ddW)),
@@ -141,7 +141,10 @@ class Response:
         return ca.vertcat(*(next(by_kind[kind]) for kind in self.kinds))
 
     def eigenvalues(self, p: Array, angle: float = 0.0) -> tuple[Any, Any]:
-        """Those that swing with the joint at rest, slowest first, and their derivatives by p."""
+        """Return the eigenvalues that swing with the joint at rest, and their derivatives by p.
+
+        The slowest comes first.
+        """
         A, by_p = self._at_rest(p, angle)
         values: Any
         values, right = np.linalg.eig(A)

@@ -67,7 +67,7 @@ class SwingModel:
     def amplitudes(
         self, columns: Array, rows: NDArray[np.bool_], weights: Array | None = None
     ) -> Array:
-        """Those of columns that leave the least of some rows (signals, columns)."""
+        """Return the columns' amplitudes that leave the least of some rows (signals, columns)."""
         best = np.ones((self.values.shape[1], columns.shape[-1]))
         for signal, values in enumerate(self.values.T):
             of_signal = columns[min(signal, len(columns) - 1), rows]
@@ -93,7 +93,7 @@ class SwingModel:
 
     @cached_property
     def _power(self) -> Array:
-        """Of every signal, the trend not counted."""
+        """Power of every signal, the trend not counted."""
         of_trend = np.linalg.lstsq(self.trend, self.values, rcond=None)[0]
         swing = self.values - self.trend @ of_trend
         return (swing**2).sum(axis=0) + 1e-300
@@ -114,7 +114,7 @@ class SwingModel:
         return columns[:, self.counts], slopes[:, :, self.counts], amplitudes
 
     def residual(self, x: Array) -> Array:
-        """What x leaves of the rows that count (signals, rows)."""
+        """Return the residual of x on the rows that count (signals, rows)."""
         columns, _, amplitudes = self._evaluate(x)
         return self.values[self.counts].T - _products(columns, amplitudes)
 
@@ -128,7 +128,7 @@ class SwingModel:
         return np.concatenate([by_p, by_amplitudes], axis=-1)
 
     def swinging(self, x: Array) -> tuple[Array, Array]:
-        """What swings by x, and what of that follows from the joint's motion (signals, rows)."""
+        """Return the swing by x, and its part from the joint's motion (signals, rows)."""
         columns, _, amplitudes = self._evaluate(x)
         swings = columns.shape[-1] - self.trend.shape[1]
         whole = _products(columns[..., :swings], amplitudes[:, :swings])

@@ -39,7 +39,7 @@ def _longest(fitter: PartFitter, rows: slice) -> slice:
 
 
 def sensitivities(fitter: PartFitter) -> Array:
-    """How the whole recording would change by the plant's values, a column each.
+    """Return the sensitivities of the whole recording to the plant's values, a column each.
 
     What amplitudes and trend can do instead does not count.
     """

@@ -1,4 +1,4 @@
-"""How frequency and damping change with the amplitude along one swing."""
+"""Changes of frequency and damping with the amplitude along one swing."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _ends(values: Array, deviations: Array, least: float) -> tuple[float, float]
 
 
 def _beyond(values: Array, deviations: Array) -> list[tuple[float, float]]:
-    """What is half a step before the first of values, by a line and a parabola; its deviation."""
+    """Extrapolate values half a step before the first, by line and parabola, with deviations."""
     weights = [np.array([1.5, -0.5])]
     if len(values) > 2:
         weights.append(np.array([1.875, -1.25, 0.375]))

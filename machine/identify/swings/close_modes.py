@@ -103,7 +103,7 @@ def find_close_modes(recording: Recording, piece: Recording, frequency: float) -
 
 
 def _beats(close: CloseModes, piece: Recording) -> bool:
-    """Whether a beat of two modes shows in a swing, as one mode by itself has none.
+    """Return whether a beat of two modes shows in a swing, as one mode by itself has none.
 
     Less than a whole beat may be the straight envelope that dry friction has. Of 100 simulated
     swings with dry friction 15 were met by two modes, with 0.65 of a beat at most.
@@ -180,7 +180,7 @@ def _judged(both: Fit, recording: Recording, piece: Recording) -> CloseModes | N
 
 
 def _amplitudes(both: Fit) -> Array:
-    """Of each mode at the begin, of the signal in which it is largest."""
+    """Return each mode's amplitude at the begin, of the signal in which it is largest."""
     best = both.model.start(both.p)[both.model.count :]
     by_signal = best.reshape(both.model.values.shape[1], -1)[:, :4]
     return np.hypot(by_signal[:, ::2], by_signal[:, 1::2]).max(axis=0)

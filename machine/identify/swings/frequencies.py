@@ -1,4 +1,4 @@
-"""At which frequency recordings swing, and whether their units can be right."""
+"""Find the frequencies at which recordings swing, and doubt their units."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _common_frequency(tables: Sequence[Candidates]) -> float:
 def doubt_units(
     recordings: Sequence[Recording], frequencies: Sequence[float], joint: str
 ) -> list[str]:
-    """What units may be wrong, of a kind of joint."""
+    """Name units that may be wrong, for a kind of joint."""
     coarse_step = 0.2  # s; and a frequency [Hz], that may come from a time in milliseconds
     slow = 0.1
     most_turns = 2 * tau  # a joint that turns further may be in degrees
@@ -147,7 +147,7 @@ def _candidates(recording: Recording) -> Candidates:
 
 
 def _prominence(recording: Recording, frequency: float) -> float:
-    """How much a recording rings at a frequency: the square of the amplitude, summed over periods.
+    """Return how much a recording rings at a frequency: squared amplitude, summed over periods.
 
     Of an accelerometer as a displacement, so that a fast mode does not hide a slow one.
     """

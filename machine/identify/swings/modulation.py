@@ -1,4 +1,4 @@
-"""Whether frequency or damping change along a swing: a test of what its fit leaves."""
+"""Test for a change of frequency or damping along a swing, by what its fit leaves."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def changes_along(fitted: Fit, frequency: float, chance: float) -> bool:
-    """Whether the residual has a part that is the swing times a curve over time.
+    """Return whether the residual has a part that is the swing times a curve over time.
 
     The chance is that of noise to pass for it.
 
@@ -50,7 +50,7 @@ def changes_along(fitted: Fit, frequency: float, chance: float) -> bool:
 
 
 def _nearest(columns: Array, values: Array) -> Array:
-    """What of some columns is nearest to values."""
+    """Return the combination of some columns that is nearest to values."""
     size = np.linalg.norm(columns, axis=0)
     scaled = columns[:, size > 0] / size[size > 0]
     share, *_ = np.linalg.lstsq(scaled, values, rcond=None)

@@ -1,4 +1,4 @@
-"""Where a recording rings down by itself: found by how its swing grows and decays."""
+"""Find where a recording rings down by itself, by how its swing grows and decays."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _top(size: Array, place: int, reach: int) -> int:
 
 
 def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
-    """Where the joint is at rest: it moves no more in a period than its noise, or creeps.
+    """Return where the joint is at rest: it moves no more in a period than its noise, or creeps.
 
     A joint that creeps moves less than 3 % of its whole way in a period.
     """
@@ -125,11 +125,11 @@ def standing(recording: Recording, frequency: float) -> NDArray[np.bool_]:
 
 
 def moves(recording: Recording) -> bool:
-    """Whether the joint moves more than its encoder flickers."""
+    """Return whether the joint moves more than its encoder flickers."""
     angle = recording.angle
     return angle is not None and float(np.ptp(angle)) > _flicker(angle)
 
 
 def _flicker(angle: Array) -> float:
-    """What an encoder may show of a joint that stands: eight deviations of its noise."""
+    """Largest range that an encoder may show of a joint at rest: eight deviations of its noise."""
     return 8.0 * float(noise_of(angle)[0])

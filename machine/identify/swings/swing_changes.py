@@ -1,4 +1,4 @@
-"""How frequency and damping change along a swing: by fits of its pieces, or by two close modes."""
+"""Changes of frequency and damping along a swing: by fits of its pieces, or by two close modes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ MET = 0.1
 
 
 def has_changes(fitter: PartFitter, part: Part, best: Fit) -> bool:
-    """Whether a swing leaves more than noise, or its frequency or damping may change along it."""
+    """Return whether a swing leaves more than noise, or may change along it.
+
+    A change is one of frequency or damping.
+    """
     return _leaves_more(part) or changes_along(best, fitter.frequency, chance=1e-2)
 
 
@@ -66,7 +69,7 @@ def with_changes(fitter: PartFitter, part: Part, best: Fit, rows: slice) -> Part
 
 
 def _cause_of_changes(fitter: PartFitter, part: Part) -> str:
-    """Why frequency and damping change along a swing: by dry friction, where that meets it."""
+    """Say why frequency and damping change along a swing: by dry friction, where that meets it."""
     much_better = 0.7  # times the misfit of one decay
     piece = fitter.thinned(fitter.piece(part))
     dry = fit_dry(piece, fitter.frequency_of(part.vector), max(fitter.damping_of(part), 1e-3))
@@ -80,7 +83,7 @@ def _cause_of_changes(fitter: PartFitter, part: Part) -> str:
 
 
 def _beyond_the_saturated(part: Part, pieces: Sequence[Part], spread: Spreads) -> Spreads:
-    """What parameters may be of all of a part, where they change after it is saturated no more."""
+    """Extrapolate parameters' ranges from the pieces after saturation to all of a part."""
     seen = pieces[-1].end - pieces[0].begin
     unseen = (pieces[0].begin - part.begin) / seen
     return {
@@ -192,7 +195,7 @@ def _where_it_fits(fitter: PartFitter, part: Part, pieces: Sequence[Part]) -> Pa
 
 
 def _words(fitter: PartFitter, part: Part) -> str:
-    """What a part is in a sentence: its frequency and damping, and at which amplitude."""
+    """Describe a part in words: its frequency and damping, and at which amplitude."""
     frequency = fitter.frequency_of(part.vector)
     damping = fitter.damping_of(part)
     return f"{frequency:.4g} Hz and {damping:.2g} at {part.amplitude:.3g}"
@@ -211,7 +214,7 @@ def fit_close_modes(fitter: PartFitter, rows: slice, start: Array) -> Part | Non
 
 
 def _figures(close: CloseModes) -> dict[str, object]:
-    """What a part says of two modes."""
+    """Return the figures that a part tells of two modes."""
     first, second = (
         f"{frequency / tau:.5g} Hz and {damping:.2g}"
         for frequency, damping in zip(close.frequencies, close.dampings)

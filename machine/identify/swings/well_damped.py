@@ -71,6 +71,6 @@ def find_well_damped(recording: Recording) -> list[tuple[slice, float]]:
 
 
 def _crossing(time: Array, away: Array, before: int, after: int) -> float:
-    """When a displacement is zero between two rows of different sides."""
+    """Return when a displacement is zero between two rows of different sides."""
     share = away[before] / (away[before] - away[after])
     return float(time[before] + share * (time[after] - time[before]))

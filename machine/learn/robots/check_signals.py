@@ -1,4 +1,4 @@
-"""Whether what was recorded of a robot's move can be the torques or accelerations of its plan.
+"""Check that what was recorded of a robot's move can be its plan's torques or accelerations.
 
 During the move the torques carry and accelerate the whole arm, gravity included, which the plan
 knows better than the swing. A sign, a unit or an order of joints that is wrong shows there, in one
@@ -38,7 +38,7 @@ _CARRIES = 0.05
 
 
 def check_signals(plan: Plan, recording: RobotRecording, start: float) -> bool:
-    """Whether the torques, which a controller may state from outside, go against the plan's.
+    """Return whether the torques, which a controller may state from outside, oppose the plan's.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def _refuse_turned(name: str, names: Sequence[str], recorded: Array, planned: Ar
 
 
 def _is_turned(recorded: Array, planned: Array) -> bool:
-    """Whether a joint's torque is the plan's with the other sign, and no other explains it."""
+    """Return whether a joint's torque is the plan's with the other sign and no other's."""
     against = float(((recorded + planned) ** 2).sum())
     along = float(((recorded - planned) ** 2).sum())
     is_close = against < _CLOSE * float((planned**2).sum())

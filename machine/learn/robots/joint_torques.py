@@ -1,4 +1,4 @@
-"""What a mode that swings after arrival does to what is recorded of a robot.
+"""The effect of a mode that swings after arrival on what is recorded of a robot.
 
 To the torques of all joints, which together hold the root of what swings: one joint sees it best,
 another not at all. And to an accelerometer at the tip.
@@ -38,7 +38,7 @@ class SeenModes(TipModes):
         self._signal = signal
 
     def rows_at(self, values: ComplexArray) -> ComplexArray:
-        """What each mode does to each signal, by the displacement of its tip (signals, modes).
+        """Return each mode's effect on each signal, by its tip's displacement (signals, modes).
 
         The modes have their shapes and these eigenvalues: a machine's differ from the plant's.
         """

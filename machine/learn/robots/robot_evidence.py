@@ -1,4 +1,4 @@
-"""What recordings of a robot's move along its path tell: its springs, and its swing at arrival.
+"""Learn a robot's springs, and its swing at arrival, from recordings of moves along its path.
 
 The springs first, all by one multiple, where the frequencies of the swing differ from the plan's;
 what the robot lacks, such as a gear or a base that gives, is left to the state at arrival. Moves
@@ -70,7 +70,7 @@ class ReadRobotMove:
 def robot_evidence(
     plan: Plan, recordings: Sequence[Any], delay: float | None
 ) -> tuple[RobotEvidence, list[ReadRobotMove], list[str]]:
-    """What the moves of a robot's plan tell, how they were read, and what is to be known of them.
+    """Return what the moves of a robot's plan tell, how they were read, and remarks on them.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def _doubt(recording: RobotRecording, start: Start, delay: float | None) -> str:
 
 
 class RobotEvidence(Evidence):
-    """What all moves of a robot together tell.
+    """Evidence that all moves of a robot together give.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ class RobotEvidence(Evidence):
 
     @property
     def beyond(self) -> float:
-        """How far the tip rings beside its modes, where that is seen [m]."""
+        """Ringing of the tip beside its modes, where that is seen [m]."""
         return max(one.after.other for one in self._moves)
 
     # The springs
@@ -219,7 +219,7 @@ class RobotEvidence(Evidence):
     def frequencies(  # pyright: ignore[reportIncompatibleMethodOverride]
         self,
     ) -> dict[str, tuple[float, float]]:
-        """Of every mode that moves told [Hz]: the plan's, and the mean of the moves'."""
+        """Frequencies of every mode that moves told [Hz]: the plan's, and the moves' mean."""
         told = dict[str, tuple[float, float]]()
         for number, model in enumerate(self._before.frequencies):
             values, deviations = self._told_of(number)
@@ -330,7 +330,7 @@ class RobotEvidence(Evidence):
     # How far the tip swings: its modes move it in several directions
 
     def _reach(self, amplitudes: NDArray[np.complex128]) -> float:
-        """How far the tip gets from where it rests by swings of all modes [m]."""
+        """Return how far the tip gets from where it rests by swings of all modes [m]."""
         seconds = 4 / float(self.modes.frequencies[0])
         times = np.linspace(0, seconds, 800)
         swings: NDArray[np.complex128] = np.exp(np.outer(self.modes.values, times))
@@ -339,29 +339,29 @@ class RobotEvidence(Evidence):
 
     @property
     def left(self) -> float:
-        """How far the tip swung after the last move: the mean of its recordings."""
+        """Swing of the tip after the last move: the mean of its recordings."""
         return float(np.mean([self._reach(swings) for swings in self._swings[-1]]))
 
     @property
     def by_frequency(self) -> float:
-        """How far by what the springs change."""
+        """Swing of the tip that follows from what the springs change."""
         return self._reach(self._frequency_share)
 
     @property
     def repeatable(self) -> float:
-        """How far by what remains beside that, and beside what was wanted."""
+        """Swing of the tip beside what the springs change, and beside what was wanted."""
         return self._reach(self._left[-1] - self._frequency_share - self._wanted)
 
     # Moves that differ
 
     @cached_property
     def _scatter(self) -> Array | None:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """By how much moves differ, by mode: as recordings of one tell, or as robots usually do."""
+        """Difference of moves by mode: as recordings of one tell, or as robots usually have."""
         return super()._scatter if self.is_repeated else self._usual_scatter
 
     @property
     def is_repeated(self) -> bool:
-        """Whether a move was recorded several times."""
+        """Return whether a move was recorded several times."""
         return any(len(move.measured) > 1 for move in self.history.moves)
 
     @cached_property
@@ -372,7 +372,7 @@ class RobotEvidence(Evidence):
 
     @property
     def _usual_scatter(self) -> Array:
-        """The same by what robots' moves differ, of the mode that swings most; halved, as parts."""
+        """Usual difference of robots' moves, shared by how each mode swings; halved, as parts."""
         swings = np.abs(self._left[-1])
         shares = swings / max(float(swings.sum()), 1e-300)
         usual: Array = shares * _DIFFER * self.unsuppressed / 2
@@ -385,7 +385,7 @@ class RobotEvidence(Evidence):
 
     @property
     def remarks(self) -> list[str]:
-        """What is to be known of springs, signs and moves that differ."""
+        """Remarks on springs, signs and moves that differ."""
         remarks = list[str]()
         if not self.is_repeated:
             remarks.append(

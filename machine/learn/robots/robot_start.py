@@ -62,7 +62,7 @@ def find_robot_start(plan: Plan, recording: RobotRecording, plant: Plant) -> Sta
 
 
 def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
-    """What the signals consist of during the move, as a plant has it (points, courses)."""
+    """Return the signals' parts during the move, as a plant has it (points, courses)."""
     duration = plan.task.duration
     times = compared_at(duration)
     moving = times >= 0
@@ -82,7 +82,7 @@ def _courses(plan: Plan, plant: Plant, signal: str) -> Array:
 
 
 def felt_at_rest(plant: Plant, time: Array, motion: JointMotion) -> Sequence[Array]:
-    """What an accelerometer at a tip that does not swing feels; of a robot along its path."""
+    """Return what an accelerometer at a tip that does not swing feels, along a robot's path too."""
     if not isinstance(plant, RobotOnPath):
         return [motion.speed**2, motion.acceleration]
     way = way_of(plant.robot, plant.path, plant.stiffness, plant.payload)

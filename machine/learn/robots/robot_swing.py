@@ -1,4 +1,4 @@
-"""What swings after a robot's move, by the torques of its joints or an accelerometer at its tip.
+"""Read the swing after a robot's move from torques of its joints or an accelerometer at its tip.
 
 All signals are fitted with the same frequencies and dampings, each with amplitudes of its own; the
 plant's modes then say which swing of the tip has these. For a while after arrival the arm itself
@@ -54,7 +54,7 @@ _STANDS_OUT = 5.0
 
 @dataclass(frozen=True)
 class RobotSwing:
-    """What was read of the swing after one move.
+    """The swing that was read after one move.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class RobotSwing:
 
 
 def mode_name(number: int) -> str:
-    """What a mode is called in a history, the slowest with the number 0."""
+    """Return the name of a mode in a history, the slowest with the number 0."""
     return f"mode {number + 1}"
 
 
@@ -126,7 +126,7 @@ def read_robot_swing(
 
 @dataclass(frozen=True, eq=False)
 class _Window:
-    """What is read of a recording after arrival: from when, and how long.
+    """The part of a recording after arrival that is read: from when, and how long.
 
     Times are since arrival [s]; periods are those of the slowest mode.
     """
@@ -139,7 +139,7 @@ class _Window:
 
     @cached_property
     def rows(self) -> slice:
-        """Those of the recording."""
+        """Rows of the recording in the window."""
         end = self.begin + self.periods / float(self.modes.frequencies[0])
         first, last = np.searchsorted(self.recording.time - self.arrival, [self.begin, end])
         return slice(int(first), int(last))
@@ -159,7 +159,7 @@ class _Window:
 
     @property
     def lasts(self) -> float:
-        """How many periods of the slowest mode it has."""
+        """Length of the window in periods of the slowest mode."""
         return float(np.ptp(self.signals[0])) * float(self.modes.frequencies[0])
 
 
@@ -263,7 +263,7 @@ class _Fit:
 
     @property
     def are_apart(self) -> bool:
-        """Whether all that rings is not a mode's swing: damped heavily, or far from each."""
+        """Return whether all that rings is no mode's swing: damped heavily, or far from each."""
         heavily = 0.08
         modes = np.abs(self.by_mode) / tau
         return all(
@@ -272,7 +272,7 @@ class _Fit:
         )
 
     def with_ring(self) -> Array:
-        """Where a fit with one more ring begins."""
+        """Return where a fit with one more ring begins."""
         starts = [
             np.append(self.found, [np.log(tau * hertz), np.log(damping)])
             for hertz in _RING[0]
@@ -299,7 +299,7 @@ class _Fit:
 
     @property
     def other(self) -> float:
-        """How far the tip rings beside its modes, at arrival [m]; 0 where torques are recorded."""
+        """Ringing of the tip beside its modes, at arrival [m]; 0 where torques are recorded."""
         if self.window.recording.acceleration is None:
             return 0.0
         values = self._eigenvalues(self.found)[len(self._model) :]
@@ -352,7 +352,7 @@ class _Fit:
         return best[1]
 
     def _cost_by_shapes(self, x: Array) -> float:
-        """What is left where the signals swing as the modes' shapes have it."""
+        """Return what is left if the signals swing as the modes' shapes have it."""
         values = self._spread(self._eigenvalues(x))
         rows = self.window.modes.rows_at(values) / self._size[:, None]
         swings = np.exp(np.outer(self._time, values))
@@ -408,7 +408,7 @@ class _Fit:
 
     @property
     def _alike(self) -> float:
-        """How many neighbours tell the same: what is left swings as fast as the fastest mode."""
+        """Number of neighbours that tell the same: the rest is as fast as the fastest mode."""
         step = float(np.median(np.diff(self._time)))
         return max(1.0, 1 / (8 * float(self.window.modes.frequencies[-1]) * step))
 
@@ -419,7 +419,7 @@ class _Fit:
         return np.maximum(np.sqrt((left**2).sum(axis=0) / freedom), 1e-6 * self._size)
 
     def _eigenvalues(self, x: Array) -> ComplexArray:
-        """Of every cluster, and then of what rings beside them."""
+        """Return the eigenvalue of every cluster, and then of what rings beside them."""
         rates, dampings = np.exp(x[0::2]), np.exp(x[1::2])
         values: ComplexArray = rates * (-dampings + 1j * np.sqrt(1 - dampings**2))
         return values
@@ -453,7 +453,7 @@ class _Fit:
         return found
 
     def _spread(self, of_clusters: NDArray[Any]) -> NDArray[Any]:
-        """What clusters have, by mode."""
+        """Spread values of clusters over their modes."""
         by_mode = np.zeros(len(self.window.modes.values), of_clusters.dtype)
         for value, modes in zip(of_clusters, self._clusters):
             by_mode[modes] = value

@@ -89,7 +89,7 @@ class Mechanism:
 
     @property
     def springs_of_beam(self) -> NDArray[np.bool_]:
-        """Which of the springs are hinges of the beam."""
+        """Places of the springs that are hinges of the beam."""
         return np.array([self.bodies[number].of_beam for number in self.sprung], bool)
 
     def stiffened(self, factor: float) -> Mechanism:

@@ -156,7 +156,7 @@ class Beam:
         self._check_place()
 
     def _check_place(self) -> None:
-        """Direction, offset and roll are numbers, and the direction is one."""
+        """Check that direction, offset and roll are numbers, and that the direction is one."""
         for name, unit in (("direction", ""), ("offset", "m")):
             object.__setattr__(self, name, _vector(name, getattr(self, name), unit))
         if np.linalg.norm(self.direction) < _LEAST_DIRECTION:
@@ -331,7 +331,7 @@ def _size(words: str, value: float, unit: str) -> float:
 
 
 def _vector(name: str, values: Any, unit: str) -> tuple[float, float, float]:
-    """Three finite numbers in the frame of the link."""
+    """Return three finite numbers in the frame of the link."""
     words = f"{name} of the beam"
     numbers = [] if isinstance(values, str) or np.ndim(values) != 1 else list(values)
     if len(numbers) != 3:

@@ -1,4 +1,4 @@
-"""Where the tip of a robot rests along its path, in space."""
+"""The place in space where the tip of a robot rests along its path."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class TipWay:
         self._frames = CubicSpline(places, np.array(frames))
 
     def deviations(self, places: Array, tips: Array, target: float) -> Array:
-        """Where the tip is, as seen from where it rests at a target [m], shape (3, samples).
+        """Return where the tip is, seen from where it rests at a target [m], shape (3, samples).
 
         The displacements of the tip are those along the axes of its own frame in which it moves.
         """

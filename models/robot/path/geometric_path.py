@@ -132,7 +132,7 @@ class GeometricPath:
 
     @classmethod
     def line(cls, start: ArrayLike, end: ArrayLike, joints: Sequence[str] = ()) -> GeometricPath:
-        """Straight in joint space, from positions to positions [rad or m]."""
+        """Make a path straight in joint space, from positions to positions [rad or m]."""
         ends = np.array([_row("start of the path", start), _row("end of the path", end)])
         middle = (ends[0] + ends[1]) / 2
         half = (ends[1] - ends[0]) / 2
@@ -149,7 +149,7 @@ class GeometricPath:
         link: str | None = None,
         turns: bool = True,
     ) -> GeometricPath:
-        """Straight in space for a link of the robot that does not bend, by inverse kinematics.
+        """Make a path along which a link that does not bend goes straight, by inverse kinematics.
 
         The joints follow within 1e-12 rad. Springs do not count: the link of a robot that bends
         hangs by its sag below the line.
@@ -287,7 +287,7 @@ class GeometricPath:
         within: float | None = None,
         waypoints: tuple[int, int] | None = None,
     ) -> GeometricPath:
-        """Through the points of a file: csv, or a trajectory_msgs/JointTrajectory as YAML.
+        """Read a path through a file's points: csv, or a trajectory_msgs/JointTrajectory as YAML.
 
         A message that has a JointTrajectory within will do as well: RobotTrajectory,
         DisplayTrajectory, a goal of FollowJointTrajectory. A csv has the joints' names above its
@@ -323,7 +323,7 @@ class GeometricPath:
         degree: int = 5,
         joints: Sequence[str] = (),
     ) -> GeometricPath:
-        """Within a tolerance of the straight lines between waypoints, of which there may be many.
+        """Make a path within a tolerance of the straight lines between waypoints, maybe very many.
 
         Of up to twenty waypoints the spline of `through` where it is near enough; or else one
         through as few of the points as keep it so; or else the straight lines themselves, their
@@ -364,7 +364,7 @@ class GeometricPath:
         *,
         joints: Sequence[str] = (),
     ) -> GeometricPath:
-        """Straight from waypoint to waypoint in joint space, round where the tip is near one.
+        """Make a path straight between waypoints in joint space, round where the tip is near one.
 
         A corner is round from where the tip comes within the radius of its place at the waypoint to
         where it leaves that, or between the halves of the lines where these are nearer. Three

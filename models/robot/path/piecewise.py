@@ -128,7 +128,7 @@ def _pieces(
 
 
 def without_small_terms(coefficients: Array, largest: Array) -> Array:
-    """Without the last terms of each function that come to less than half its largest error."""
+    """Drop the last terms of each function that come to less than half its largest error."""
     tails = np.cumsum(np.abs(coefficients[:, ::-1]), axis=1)[:, ::-1]
     shortened = np.where(tails > largest / 2, coefficients, 0.0)
     used = np.flatnonzero(np.abs(shortened).max(axis=(0, 2)))

@@ -35,7 +35,7 @@ _MANY = 200_000
 
 
 def vertices_within(points: Array, tolerance: float) -> Array:
-    """As few of the points as keep the lines within a tolerance of all [rad or m]."""
+    """Return as few of the points as keep the lines within a tolerance of all [rad or m]."""
     return points[numbers_within(points, tolerance)]
 
 

@@ -77,7 +77,7 @@ class Inertia:
 
     @property
     def fault(self) -> str:
-        """Why no body has such an inertia; an empty text where one may."""
+        """Reason why no body has such an inertia; an empty text where one may."""
         least, middle, most = self.principal
         if least < -max(_ROUNDED * most, _NO_MOMENT):
             return f"a moment of inertia of {least:.3g} kg m^2, below 0"

@@ -75,7 +75,7 @@ def answer_of(planner: MessagePlanner, question: Mapping[str, Any]) -> dict[str,
 
 
 def _attempted(attempt: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """What an attempt gives, or its error in one line."""
+    """Return what an attempt gives, or its error in one line."""
     try:
         return attempt()
     except QuietarmError as error:

@@ -161,7 +161,7 @@ def _of_fronts(given: Given, fronts: dict[str, Front]) -> Report:
 
 
 def _with_floor(comparison: Comparison, solver: Solver) -> Comparison:
-    """With the least energy over all joint motions; without where none is found."""
+    """Add the least energy over all joint motions to a comparison; nothing where none is found."""
     from quietarm.ocp import QuietarmError, energy_floor
 
     try:

@@ -48,7 +48,7 @@ def _output(text: str) -> Path:
 
 
 class ExportCommand(Command):
-    """It has an option for each setting of a format, those of the user's own file too."""
+    """Command with an option for each setting of a format, those of the user's own file too."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Load the user's file first: what it brings has options."""

@@ -154,7 +154,7 @@ def plan(given: Given) -> None:
 
 
 def _with_errors(answer: FoundMotion) -> FoundMotion:
-    """With what the motion of a certain task leaves where the plant is off its model."""
+    """Add what the motion of a certain task leaves where the plant is off its model."""
     motion = answer.motion
     if motion.task.ranges:
         return answer

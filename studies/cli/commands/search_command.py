@@ -179,7 +179,7 @@ def search(given: Given) -> None:
 
 @dataclass
 class _Asked:
-    """What is searched, a task or a function of a file, by which method, with options of both.
+    """A search that is asked for: of a task or a file's function, its method, options of both.
 
     `run` is the search that goes on in this process, if one does.
     """

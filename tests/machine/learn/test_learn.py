@@ -323,12 +323,12 @@ def cut(recorded, end):
 
 
 def stretched(recorded, factor):
-    """The same by a clock that runs so much slower."""
+    """Return the recording by a clock that runs so much slower."""
     return replace(recorded, time=factor * recorded.time)
 
 
 def clipped(recorded, most):
-    """The same by a sensor that sees so far from the target alone [m]."""
+    """Return the recording by a sensor that sees so far from the target alone [m]."""
     return replace(recorded, tip=np.clip(recorded.tip, 0.5 - most, 0.5 + most))
 
 

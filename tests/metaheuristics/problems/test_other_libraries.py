@@ -33,7 +33,7 @@ def test_the_pages_examples_run_as_they_stand(tmp_path, monkeypatch, capsys):
 
 
 def none_beats_the_exact_front(objectives):
-    """Those of any motion within the limits."""
+    """Check that no objectives are better than those of any motion within the limits."""
     (front,) = problem_of("arm-on-flexible-link-90deg-0.8s-limits").fronts()
     for residual, energy in objectives:
         beyond = [point.energy for point in front.points if point.residual >= residual]

@@ -15,7 +15,10 @@ SIXTH = qa.PointToPoint(qa.SingleLinkManipulator(), target=qa.deg(30), duration=
 
 
 def parabolas(x):
-    """Of one candidate; the front is the line from (0, 0) to (2, 0), with f2 = (2 - sqrt(f1))^2."""
+    """Return two objectives, whose front is the line from (0, 0) to (2, 0).
+
+    On it f2 = (2 - sqrt(f1))^2.
+    """
     return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2]
 
 

@@ -24,7 +24,7 @@ def tip(positions):
 
 
 def off_lines(positions):
-    """How far positions are from the nearest of the lines."""
+    """Return how far positions are from the nearest of the lines."""
     ways = np.diff(POINTS, axis=0)
     rel = positions[:, None] - POINTS[:-1]
     share = np.clip((rel * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)

@@ -29,14 +29,14 @@ CHAIN = MIMIC.replace("</robot>", f"{SLIDER}</robot>")
 
 
 def _torques(robot, motion):
-    """Of the driven joints, the base still."""
+    """Return torques of the driven joints, the base still."""
     still = np.zeros((3, robot.dynamics.sprung))
     torques = torques_of(robot, *np.hstack([motion, still]))
     return torques[: len(robot.joints)]
 
 
 def test_inertias_and_torques_are_those_of_the_joints_by_virtual_work():
-    """The same bodies with every joint driven, put where the followers are."""
+    """Bodies with every joint driven, put where the followers are, need the same."""
     alone = CHAIN
     for tag in ('<mimic joint="shoulder" multiplier="-2" offset="0.3"/>',
                 '<mimic joint="elbow" multiplier="0.1"/>'):  # fmt: skip
@@ -233,7 +233,7 @@ def test_a_leader_after_its_follower_in_the_file_leads_as_well():
 
 @pytest.mark.slow
 def test_along_a_path_a_follower_swings_the_tip_as_a_driven_joint_would():
-    """The same motion with the elbow driven: the same residual, and torques by virtual work."""
+    """A driven elbow leaves the same residual, and needs the same torques by virtual work."""
     beam = qa.Beam(
         at="lower", length=0.5, bending_stiffness=30.0, mass_per_length=0.2, tip_mass=0.3, pieces=2
     )

@@ -40,7 +40,7 @@ def model_of(text=MODEL):
 
 
 def torques_in(model, robot, x, v, a):
-    """Of the driven joints, then of the spring, by virtual work with the follower."""
+    """Return torques of the driven joints, then the spring, by virtual work with the follower."""
     data = mujoco.MjData(model)
     names = [*robot.joints, "bend"]
     slopes = np.zeros((model.nv, len(names)))

@@ -319,7 +319,7 @@ def test_a_rounded_path_has_three_continuous_derivatives():
 
 
 def test_a_smooth_path_of_many_points_is_a_spline_through_few():
-    """Of a quarter of a circle, and back on another: the curve itself, within the tolerance."""
+    """A quarter of a circle and one back: the curve itself, within the tolerance."""
     angles = np.linspace(0.0, np.pi, 3001)
     curve = np.column_stack([np.sin(angles), angles - np.cos(angles)])
     path = qa.GeometricPath.within(curve, TOLERANCE)
@@ -359,7 +359,7 @@ def test_noise_beyond_the_tolerance_is_refused():
 
 
 def test_thousands_of_points_of_a_file_are_thinned(tmp_path):
-    """What the joints do is kept with the path, and told in a saved plan."""
+    """The path keeps what the joints do, and a saved plan tells it."""
     angles = np.linspace(0.0, 2.0, 2500)
     table = np.column_stack([0.01 * np.arange(2500), np.sin(angles), angles])
     np.savetxt(tmp_path / "way.csv", table, delimiter=",", header="time,a,b", comments="")

@@ -241,7 +241,7 @@ def test_a_path_that_names_its_joints_may_have_them_in_any_order():
 
 
 def test_a_robots_content_is_plain():
-    """What a plan's file holds of it can be written as JSON."""
+    """Everything that a plan's file holds of a robot can be written as JSON."""
     from dataclasses import asdict
 
     assert json.loads(json.dumps(asdict(ur5_with_bar())))["beam"]["length"] == 0.8
@@ -249,7 +249,7 @@ def test_a_robots_content_is_plain():
 
 @pytest.mark.slow
 def test_modes_that_the_path_excites_are_followed():
-    """Of a robot with a bar on a pedestal: those of the bar and of the pedestal, none faster."""
+    """A robot with a bar on a pedestal: modes of the bar and of the pedestal, none faster."""
     robot = dataclasses.replace(
         ur5_with_bar(), base=Base((6e4, 6e4), (5.0, 5.0), 0.5), modes="excited"
     )

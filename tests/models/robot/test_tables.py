@@ -31,7 +31,7 @@ def path(request):
 
 
 def _values(tables, table):
-    """Of a table at the places, by CasADi as the solvers evaluate it."""
+    """Return a table's values at the places, by CasADi as the solvers evaluate it."""
     place = ca.SX.sym("s")
     entries = tables.at(place).values(table)
     function = ca.Function("table", [place], [ca.vertcat(*entries.ravel())])

@@ -1,4 +1,4 @@
-"""What of a URDF is used, what is refused and what is named as not used."""
+"""Parts of a URDF that are used, that are refused and that are named as not used."""
 
 import math
 from dataclasses import asdict
@@ -152,7 +152,7 @@ def test_inertias_that_no_body_has_are_named(moments, words):
 
 
 def test_a_moment_below_0_is_a_warning_where_it_does_not_matter():
-    """As of TIAGo's antennas, on the base; of a link that moves with no other it is refused."""
+    """TIAGo's antennas, on the base, have one; a link that moves with no other is refused."""
     antenna = '<inertial><mass value="1e-6"/><inertia ixx="-3.5e-8" iyy="1e-6" izz="1e-6"/>'
     still = URDF.replace(
         '<link name="ground"/>', f'<link name="ground">{antenna}</inertial></link>'

@@ -19,7 +19,7 @@ from quietarm.ocp.solvers.choice import SOLVERS
 
 @pytest.fixture(scope="module", params=["sqp", "ipopt"])
 def front(request):
-    """Of the single link's first move."""
+    """Return a front of the single link's first move."""
     task, bound = CASES["single link"]
     settings = {"bound": bound, "points": 4, "starts": 2, "solver": SOLVERS[request.param]()}
     return epsilon_front(task, CycloidPolynomial(4), **settings)

@@ -52,7 +52,7 @@ def test_a_plan_at_rest_stays_at_rest_and_its_worst_case_is_a_corner():
 
 
 def test_effort_heat_and_energy_of_a_cycle_are_integrals_over_it():
-    """Of a light load: the force of a plain cycloid is known, and that of dry friction."""
+    """A light load: the force of a plain cycloid is known, and that of dry friction."""
     drive = Drive(friction_load=20, motor_constant=30)
     axis = LinearAxis(omega1=300, zeta1=0.02, mass=50, load=1e-6, friction=10, drive=drive)
     span, duration, dwell = 0.5, 0.8, 0.2

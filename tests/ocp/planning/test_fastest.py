@@ -100,7 +100,7 @@ def test_a_plan_on_a_spline_is_saved_and_loaded(tmp_path):
 
 
 def least_time_by_a_linear_program(task, intervals=240):
-    """Of a linear axis whose acceleration is constant on every interval: bisection [s].
+    """Find the least time of a linear axis by bisection [s], with accelerations of steps.
 
     The state, position, speed and the load's swing, is propagated by matrix exponentials.
     """

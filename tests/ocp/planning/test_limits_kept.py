@@ -23,7 +23,7 @@ OF_TWO_LINKS = {**SHARES, "torque": 0.99, "speed": 0.97, "deflection": 0.95}
 
 
 def follow(plan):
-    """What samples every quantity between two times, by DOP853."""
+    """Return what samples every quantity between two times, by DOP853."""
     task, modes = plan.task, plan.task.plant.modes
     t, x = ca.SX.sym("t"), ca.SX.sym("x", 2 * modes)
     W, dW = ca.vertsplit(x)[:modes], ca.vertsplit(x)[modes:]

@@ -1,4 +1,4 @@
-"""What cannot be is refused before anything is solved, and a bound is below what can be."""
+"""Tasks that cannot be are refused before anything is solved; a bound is below what can be."""
 
 import math
 from dataclasses import replace
@@ -19,7 +19,7 @@ INERTIA = 2.383e-2
 
 @pytest.fixture
 def solves(monkeypatch):
-    """How many problems a solver was given."""
+    """Count the problems that a solver was given."""
     counted = []
     solve = qa.Sqp.solve
 

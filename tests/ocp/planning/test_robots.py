@@ -226,7 +226,7 @@ def test_a_corrected_plan_is_at_rest_by_the_whole_equations(plan, tmp_path):
 
 
 def test_a_corrected_plan_is_at_rest_with_24_hinges_in_each_direction(plan):
-    """Whatever the hinges: those of the plan are five, of the judge six, of MuJoCo 24."""
+    """The hinges may differ: those of the plan are five, of the judge six, of MuJoCo 24."""
     assert plan.task.plant.robot.beam.count == 5
     assert plan.task.plant.robot.finer.beam.count == 6
     residual, energy, _ = _measured(qa.ocp.correct_in_full(plan), _truth(pieces=24))
@@ -262,7 +262,7 @@ def test_a_saved_plan_has_its_robot_and_its_path_in_it(plan, tmp_path):
 
 
 def test_a_plan_whose_robot_was_changed_by_hand_gives_other_figures(plan, tmp_path):
-    """What is in the file counts, and nothing that is here."""
+    """Only the content of the file counts, and nothing that is here."""
     file = tmp_path / "move.json"
     plan.save(file)
     document = json.loads(file.read_text().replace('"tip_mass": 0.5', '"tip_mass": 0.6'))

@@ -1,4 +1,4 @@
-"""How many terms a plan takes where nobody says it: measured in benchmarks/terms.py."""
+"""The number of terms of a plan if nobody says it: measured in benchmarks/terms.py."""
 
 import re
 from dataclasses import replace

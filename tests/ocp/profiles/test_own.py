@@ -42,7 +42,7 @@ class _Waves(qa.JointProfile):
 
 @dataclass(frozen=True)
 class _GivenWaves(_Waves):
-    """The same with formulas of its derivatives."""
+    """Waves with formulas of their derivatives."""
 
     name: ClassVar[str] = "given-waves-of-a-test"
 
@@ -61,7 +61,7 @@ class _GivenWaves(_Waves):
 
 @dataclass(frozen=True)
 class _CycloidOfWaves(Cycloid):
-    """The same as a cycloid of an input, in which the coefficients are linear."""
+    """Waves as a cycloid of an input, in which the coefficients are linear."""
 
     name: ClassVar[str] = "cycloid-of-waves-of-a-test"
     waves: int = 4

@@ -69,7 +69,7 @@ def test_sweeps_change_one_thing_alone(evaluated):
 
 
 def plain_residual(r, task, length):
-    """What a cycloid of this length leaves of an undamped mode of r times the frequency [m].
+    """Return the residual of a cycloid of this length, undamped, at r times the frequency [m].
 
     W'' + w^2 W = -b theta'' is left with b / w |integral of theta'' exp(j w t)|, where
     theta'' = span turn / length sin(turn t).
@@ -80,7 +80,7 @@ def plain_residual(r, task, length):
 
 
 def left(shaper, r, task, profile):
-    """The same of a shaped cycloid: docs/physics.md, 'Input shaping', has the shapers' curves."""
+    """Return the residual of a shaped cycloid: docs/physics.md, 'Input shaping', has the curves."""
     share = {
         "zv": abs(math.cos(math.pi * r / 2)),
         "zvd": math.cos(math.pi * r / 2) ** 2,

@@ -39,7 +39,7 @@ class Mobile(qa.Plant):
 
 
 def outputs(plant, numbers):
-    """All that a plant's equations give at one motion."""
+    """Return all that a plant's equations give at one motion."""
     joint, state = JointMotion(*numbers[:3]), np.reshape(numbers[3:], (3, -1))[:, : plant.modes]
     W, dW, ddW = state.tolist()
     given = [*plant.modal_accelerations(joint, W, dW), plant.torque(joint, W, dW, ddW)]

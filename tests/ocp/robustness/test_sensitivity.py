@@ -1,4 +1,4 @@
-"""What changes with each parameter of the plant."""
+"""Changes of a plan with each parameter of the plant."""
 
 from dataclasses import replace
 from math import pi

@@ -1,4 +1,4 @@
-"""What `symbolic_rollout` gives can be differentiated: finite, and equal to differences."""
+"""Derivatives of what `symbolic_rollout` gives: finite, and equal to differences."""
 
 from functools import cache
 

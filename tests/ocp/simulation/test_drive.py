@@ -134,7 +134,7 @@ def test_a_load_follows_the_planned_path_by_its_set_points(forward):
 
 
 def off_path(plan):
-    """How far the load is from the planned path on the way [m]."""
+    """Return how far the load is from the planned path on the way [m]."""
     run = plan.candidate.run_on_drive()
     moving = run.time <= plan.task.duration
     return np.abs(run.load[moving] - plan.path(run.time[moving])).max()

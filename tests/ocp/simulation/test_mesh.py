@@ -1,4 +1,4 @@
-"""How many steps a move takes."""
+"""Number of steps that a move takes."""
 
 import math
 from dataclasses import dataclass

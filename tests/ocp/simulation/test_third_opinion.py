@@ -29,7 +29,7 @@ CASES = [
 
 @cache
 def third_opinion(case):
-    """What SciPy finds of one of the `CASES`, solved once for all tests."""
+    """Return what SciPy finds of one of the `CASES`, solved once for all tests."""
     return ThirdOpinion(*CASES[case])
 
 

@@ -1,4 +1,4 @@
-"""What the tests of `quietarm.ocp.solvers` share."""
+"""Fixtures that the tests of `quietarm.ocp.solvers` share."""
 
 import pytest
 

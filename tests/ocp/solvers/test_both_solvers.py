@@ -22,7 +22,7 @@ LINE = TorqueSpeedLine(((0.4, 0.0), (0.2, 3.5)))
 
 
 def _ask(limits, bound=None, minimise=LEAST_ENERGY):
-    """What is asked for, limits by name."""
+    """Make a request with limits by name."""
     made = [
         Limit.of_residual(size) if name == RESIDUAL else Limit(QUANTITIES[name], -size, size)
         for name, size in limits.items()
@@ -135,7 +135,7 @@ def test_rows_of_many_kinds_are_solved_as_alone(link_and_arm):
 
 
 def _corrupt_derivatives(function):
-    """The same function with the first entry of every gradient lost."""
+    """Return the function with the first entry of every gradient lost."""
 
     def corrupted(*arguments):
         found = function(*arguments)

@@ -1,4 +1,4 @@
-"""What the tests of the command line share: a folder of their own and refusals."""
+"""Fixtures that the tests of the command line share: a folder of their own and refusals."""
 
 import pytest
 

@@ -11,7 +11,7 @@ from quietarm.ocp import files
 
 
 def no_space(*_, **_settings):
-    """What a system says on a full disk: not which file it was."""
+    """Fail as a system does on a full disk: it says not which file it was."""
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 

@@ -20,7 +20,7 @@ FASTEST = MOVE.replace("0.8", "fastest")
 
 @pytest.fixture
 def seen(monkeypatch):
-    """What ends the iterations of each solver, noted where these begin."""
+    """Note what ends the iterations of each solver where these begin."""
     by_solver = {}
     minimise = sqp.minimise
 

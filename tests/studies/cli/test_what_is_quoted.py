@@ -71,7 +71,7 @@ def replaced(document):
 
 
 def quoted_in(err):
-    """How many letters of the long word a message has."""
+    """Return how many letters of the long word a message has."""
     return len(MARK) * err.count(MARK)
 
 

@@ -23,7 +23,7 @@ def on_machine(plan):
 
 
 def kick(plan):
-    """What each move leaves besides, by a fault that grows with its acceleration [m]."""
+    """Return what each move leaves besides, by a fault that grows with its acceleration [m]."""
     return 3e-4 * plan.task.target / plan.task.duration**2
 
 

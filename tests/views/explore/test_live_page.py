@@ -1,4 +1,4 @@
-"""What the page alive is asked and answers, without its server and without a browser."""
+"""Questions and answers of the page alive, without its server and without a browser."""
 
 import json
 import re

@@ -30,7 +30,7 @@ def front(task):
 
 @pytest.fixture(scope="module")
 def shown(front):
-    """What the page has of it."""
+    """Return what the page has of a front."""
     (move,) = trade_off(front).moves
     return move
 

@@ -1,4 +1,4 @@
-"""What the page to drag says: its figures are the files', and no sentence reads the wrong way."""
+"""Words of the page to drag: its figures are the files', and no sentence reads the wrong way."""
 
 import json
 import math
@@ -34,7 +34,7 @@ from quietarm.views.report.method_rows import described
 
 @dataclass(frozen=True)
 class NoEnergy(Energy):
-    """What costs nothing, whatever the motion."""
+    """Energy of nothing, whatever the motion."""
 
     name = "none"
 

@@ -1,4 +1,4 @@
-"""What methods are called, by the names that their fronts and jobs state."""
+"""Names of methods, by those that their fronts and jobs state."""
 
 import pytest
 

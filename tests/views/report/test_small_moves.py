@@ -1,4 +1,4 @@
-"""What counts as at rest is less of a small move, wherever words say it."""
+"""Small moves count as at rest at less than others, wherever words say it."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""How VEPSO's particles move, and what happens at the bounds."""
+"""Moves of VEPSO's particles, and what happens at the bounds."""
 
 import numpy as np
 import pytest

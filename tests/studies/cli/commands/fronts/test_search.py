@@ -20,7 +20,7 @@ TASK = PointToPoint(SingleLinkManipulator(), math.pi / 6, 0.8)
 
 
 def directly(method="vepso", seed=0, **settings):
-    """What `SMALL` is to find."""
+    """Return the front that `SMALL` is to find."""
     given = {"bound": 0.2, "population": 8, "generations": 4, **settings}
     return search(TASK, CycloidPolynomial(2), algorithm=method, seed=seed, **given)
 

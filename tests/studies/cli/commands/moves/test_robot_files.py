@@ -15,7 +15,7 @@ LINE = "robot.yaml --start=0.4,1.0 --line-by=0.1,0,0 --duration 1"
 
 
 def _words(out):
-    """What was printed, in one line."""
+    """Return what was printed, in one line."""
     return " ".join(out.split())
 
 

@@ -1,4 +1,4 @@
-"""What commands say of a robot whose URDF has, lacks or repeats what bears on the answer."""
+"""Answers of commands on a robot whose URDF has, lacks or repeats what bears on them."""
 
 import csv
 from pathlib import Path
