@@ -91,7 +91,7 @@ def _is_linear(plan: Plan) -> bool:
 
 
 def _is_too_far(plan: Plan, recording: Recording, start: Start, went: float, swing: float) -> bool:
-    """Return whether a tip goes much farther than its joint takes it; of one that turns, by its lever."""
+    """Return whether a tip goes much farther than its joint, or than its lever, takes it."""
     span = abs(plan.task.span)
     if _is_linear(plan):
         return went > _MOST_WAYS * (span + 2 * swing)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.text_files import read_text, read_yaml
@@ -62,9 +63,9 @@ class JointTable:
                 f"waypoints {first}:{last} are none of {len(self.positions)}; give the numbers of "
                 "the first and the last, as 2:4"
             )
-        return self._of_rows(slice(first - 1, last))
+        return self._of_rows(np.arange(first - 1, last))
 
-    def _of_rows(self, rows: slice | Array, *remarks: str) -> JointTable:
+    def _of_rows(self, rows: NDArray[np.int64], *remarks: str) -> JointTable:
         """Return the table of some of its points, with further remarks."""
         times, velocities, accelerations = (
             None if values is None else values[rows]
@@ -98,7 +99,7 @@ class JointTable:
             for row in rows[:_NAMED].tolist()
         )
         more = f", and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
-        return self._of_rows(~repeated, f"{words}{more}")
+        return self._of_rows(np.flatnonzero(~repeated), f"{words}{more}")
 
 
 _AS_FAR = 1e-9
