@@ -273,7 +273,7 @@ def test_an_export_format(follow, refused, done):
         f"export --help {own}".replace(f"export --help {own}", f"export {own} --help")
     )
     move = f"single-link {own} --target 30deg --duration 0.8"
-    assert ".nc for G-code" in refused(f"plan {move} --output move.ngc")
+    assert ".st, .nc" in refused(f"plan {move} --output move.ngc")
     assert ".nc, .gcode" in refused(f"export plan.json {own} --output move.ngc")
     assert ".nc" not in refused(f"front {move} --output front.nc").partition("; give")[2]
     assert "--axis is for g-code, not for csv" in refused(

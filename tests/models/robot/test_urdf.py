@@ -250,9 +250,9 @@ def test_a_bar_heavier_than_its_robot_is_refused(tmp_path):
 
 @pytest.mark.slow
 def test_many_joints_are_listed_in_a_line_of_some_length():
-    with pytest.raises(ValueError, match=r"'finger' .* \.\.\. ") as refusal:
+    with pytest.raises(ValueError, match=r"'finger' .* and 95 more") as refusal:
         robot_of(urdf_of("tiago_dual.urdf"), joints=["finger"])
-    assert len(str(refusal.value)) < 1000
+    assert len(str(refusal.value)) < 400
 
 
 def test_a_range_with_one_end_begins_or_ends_at_0():
