@@ -18,7 +18,7 @@ def test_there_are_commands_for_a_move_of_your_own():
 
 
 WITHOUT_JERK_LIMIT = {
-    "ur5_bar.yaml": ("robots", "The limits are those that MoveIt has, jerk included"),
+    "ur5_bar.yaml": ("robots", "The limits are in MoveIt's format, jerk included"),
     "--profile free": ("gallery", "its acceleration jumps"),
     "--from": ("sweeps", "keeps the limits of its sweep"),
 }
