@@ -8,7 +8,7 @@
 The machines are not quietarm's model (`parts/drive`). Each is recorded as a user records it, then
 planned for by quietarm with what it identifies, and its set points are replayed at 1 kHz on
 machines that differ in one property at a time. The csv has a row for every run. `--page` writes the
-tables of docs/drive.md from the csv; without it the csv is made anew, too. `--recordings` writes
+pages docs/drive*.md from the csv; without it the csv is made anew, too. `--recordings` writes
 the recordings that the pages use, of a tool that swings while its axis moves.
 """
 
@@ -291,11 +291,11 @@ def rows_of(cases: list[Case]) -> list[list[str]]:
 
 
 def main() -> None:
-    """Record, plan, replay, and write the csv and the page."""
+    """Record, plan, replay, and write the csv and the pages."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--machine", nargs="+", choices=MOVES, default=list(MOVES))
     parser.add_argument("--output", type=Path, default=page.RESULTS, help="csv to write")
-    parser.add_argument("--page", action="store_true", help="only write the page from the csv")
+    parser.add_argument("--page", action="store_true", help="only write the pages from the csv")
     parser.add_argument("--recordings", action="store_true", help="only write docs/recordings")
     options = parser.parse_args()
     out = console()
@@ -318,7 +318,7 @@ def main() -> None:
         out.print(f"wrote {options.output}")
     if options.output == page.RESULTS and options.machine == list(MOVES):
         page.write()
-        out.print(f"wrote {page.PAGE}")
+        out.print("wrote", *(f"docs/{name}.md" for name in page.PAGES))
 
 
 if __name__ == "__main__":

@@ -32,9 +32,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Rectangle
 from matplotlib.text import Text
 from PIL import Image
 
@@ -432,11 +434,90 @@ def residual_over_moves(quick: bool) -> Picture:
     return _picture_of(figure, "learned.png", Path("learned.png"), quick)
 
 
+STEEL, DARK, SENSOR = "#b8bec6", "#4a5058", "#d55e00"
+"""Colours of a drawing: what swings, what holds it, and where the sensor is."""
+
+
+def place_of_the_sensor(quick: bool) -> Picture:
+    """Where the sensor goes on an arm and on a linear axis, and a recording that will do."""
+    figure = new_figure(10.4, 4.0)
+    arm, axis, recording = figure.subplots(1, 3)
+    head(
+        figure,
+        "Hold the joint, put the sensor where the tool is, push, let go",
+        "orange: the sensor, and the direction that it measures; x: too close to the joint",
+    )
+    _draw_arm(arm)
+    _draw_axis(axis)
+    _draw_recording(recording)
+    for ax in (arm, axis):
+        ax.set_aspect("equal")
+        ax.set_axis_off()
+    figure.savefig("sensor.png", dpi=150)
+    return _picture_of(figure, "sensor.png", Path("sensor.png"), quick)
+
+
+def _draw_arm(ax: Axes) -> None:
+    """A beam on a motor, from above, bent by a push."""
+    ax.set_title("An arm that turns, from above", **TITLE)
+    along = np.linspace(0.0, 1.0, 60)
+    bent = 0.55 * along**2 * (3 - along) / 2
+    for share, opacity in ((-1.0, 0.2), (0.0, 0.35), (1.0, 1.0)):
+        ax.plot(3 * along, share * bent, color=STEEL, linewidth=7, alpha=opacity, zorder=1)
+    ax.add_patch(Rectangle((-0.62, -0.62), 1.24, 1.24, color="#d9dde2", zorder=1))
+    ax.add_patch(Circle((0.0, 0.0), 0.42, color=DARK, zorder=2))
+    ax.add_patch(Circle((0.0, 0.0), 0.14, color=STEEL, zorder=3))
+    ax.plot([0.75], [0.0], "x", color=DARK, markersize=9, markeredgewidth=2, zorder=4)
+    _put_sensor(ax, 3.0, 0.55, (0.0, 0.62))
+    ax.text(0.0, -0.78, "joint, held\nby its brake", ha="center", va="top", fontsize=8)
+    ax.text(2.9, -0.78, "sensor at the tip,\nacross the arm", ha="center", va="top", fontsize=8)
+    ax.set(xlim=(-0.9, 3.9), ylim=(-1.4, 1.3))
+
+
+def _draw_axis(ax: Axes) -> None:
+    """A carriage on its rail with a mast and a tool, from the side."""
+    ax.set_title("A linear axis, from the side", **TITLE)
+    ax.add_patch(Rectangle((-1.7, 1.22), 3.4, 0.16, color=DARK, zorder=1))
+    ax.add_patch(Rectangle((-0.55, 0.72), 1.1, 0.5, color="#8d949d", zorder=2))
+    down = np.linspace(0.0, 1.0, 60)
+    bent = 0.4 * down**2 * (3 - down) / 2
+    for share, opacity in ((-1.0, 0.2), (0.0, 0.35), (1.0, 1.0)):
+        ax.plot(share * bent, 0.72 - 2.0 * down, color=STEEL, linewidth=7, alpha=opacity, zorder=1)
+    ax.plot([0.0], [0.97], "x", color="white", markersize=9, markeredgewidth=2, zorder=4)
+    _put_sensor(ax, 0.4, -1.28, (0.62, 0.0))
+    ax.text(-0.65, 0.97, "carriage, held", ha="right", va="center", fontsize=8)
+    ax.text(0.75, -0.6, "sensor at the tool,\nalong the axis", ha="left", va="center", fontsize=8)
+    ax.set(xlim=(-2.0, 2.6), ylim=(-1.8, 1.6))
+
+
+def _put_sensor(ax: Axes, x: float, y: float, way: tuple[float, float]) -> None:
+    """A tool with a sensor on it, and the direction in which it measures."""
+    ax.add_patch(Rectangle((x - 0.24, y - 0.24), 0.48, 0.48, color=DARK, zorder=3))
+    ax.add_patch(Rectangle((x - 0.13, y - 0.13), 0.26, 0.26, color=SENSOR, zorder=4))
+    ends = {"xy": (x + way[0], y + way[1]), "xytext": (x - way[0], y - way[1])}
+    ax.annotate("", arrowprops={"arrowstyle": "<->", "color": SENSOR, "lw": 1.8}, zorder=2, **ends)
+
+
+def _draw_recording(ax: Axes) -> None:
+    """A push, and the swing after it for twenty periods."""
+    ax.set_title("A recording that will do", **TITLE)
+    period, ratio = 1 / 3.2, 0.01
+    time = np.arange(-0.6, 20 * period, period / 40)
+    swing = np.exp(-ratio * 2 * np.pi / period * time) * np.cos(2 * np.pi / period * time)
+    pushed = 0.5 * (1 - np.cos(np.pi * np.clip((time + 0.5) / 0.4, 0.0, 1.0)))
+    ax.plot(time, np.where(time < 0, pushed, swing), color=SENSOR, linewidth=1)
+    ax.set(xlabel="time [s]", ylabel="tip, any unit", ylim=(-1.25, 1.55), yticks=[0.0])
+    ax.text(-0.55, 1.2, "push", fontsize=8)
+    ax.text(1.0, 1.2, "let go: 20 swings or more", fontsize=8)
+    ax.grid(alpha=0.25)
+
+
 MAKERS: Mapping[str, Callable[[bool], Picture]] = {
     "front.png": fronts_compared,
     "dragged.gif": film_of_the_page,
     "explore.png": page_of_sliders,
     "learned.png": residual_over_moves,
+    "sensor.png": place_of_the_sensor,
 }
 """Makers of pictures that no command writes; told whether less will do."""
 

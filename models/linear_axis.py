@@ -20,7 +20,7 @@ class LinearAxis(Plant):
     """A carriage with a swinging load, in metres and newtons.
 
     W is how far each mode displaces the load along the axis, as seen from the carriage.
-    docs/plants.md derives the equations.
+    docs/linear_axis.md has the equations.
 
     Raises
     ------

@@ -230,7 +230,7 @@ class Plant(_Driven, ABC):
         """Second time derivatives of the modal amplitudes [m/s^2], `modes` of them.
 
         By the joint's motion [rad, rad/s, rad/s^2], the amplitudes W [m] and their rates [m/s].
-        An amplitude that is an angle, of a shaft or a rope, is in rad: see docs/plants.md.
+        An amplitude that is an angle, of a shaft or a rope, is in rad: see docs/own_plant.md.
         """
 
     def torque(self, joint: JointMotion, W: Modes, dW: Modes, ddW: Modes) -> Expression:

@@ -93,7 +93,7 @@ LEAST_MOVE = 1e-9
 """Below these [s, rad or m] the integrators' absolute tolerances do not suffice."""
 MARGIN = 3.0
 """A band is so many times the residual limit: servo, dry friction and backlash of a machine, which
-no plant has, leave as much again and more. docs/drive.md has what they leave."""
+no plant has, leave as much again and more. docs/drive_margin.md has what they leave."""
 RANGE_OF_BAND: Mapping[str, float] = {FREQUENCY: 0.05}
 """Errors within which the tip stays in a band where nobody says them."""
 _SMALL_MOVE = 1e-3

@@ -123,7 +123,7 @@ def quick_pictures(monkeypatch):
 
 @pytest.fixture
 def crane_file(tmp_path, _plants_of_this_test_are_forgotten):
-    """A user's file that defines a plant: that of docs/plants.md."""
+    """A user's file that defines a plant: that of docs/own_plant.md."""
     path = tmp_path / "crane.py"
-    path.write_text(blocks("plants", "python")[1])
+    path.write_text(blocks("own_plant", "python")[0])
     return path

@@ -18,7 +18,7 @@ def test_there_are_commands_for_a_move_of_your_own():
 
 
 WITHOUT_JERK_LIMIT = {
-    "ur5_bar.yaml": ("robots", "The limits are those that MoveIt has, jerk included"),
+    "ur5_bar.yaml": ("robots", "The limits are in MoveIt's format, jerk included"),
     "--profile free": ("gallery", "its acceleration jumps"),
     "--from": ("sweeps", "keeps the limits of its sweep"),
 }
@@ -64,7 +64,7 @@ def test_the_table_is_that_of_a_reproduction():
         "gradient, at rest": "gradient, in the box", "at rest, no box": "gradient",
     }  # fmt: skip
     measured = {}  # by move and system
-    *parts, like = (ROOT / "docs/systems.md").read_text().split("\n## ")[1:]
+    parts = PAGES["systems"].split("\n## ")[1:]
     for part in parts:
         names, _, *rows = _rows(part.splitlines())
         move = part.split("\n", 1)[0].split(", ", 1)[1]
@@ -78,7 +78,7 @@ def test_the_table_is_that_of_a_reproduction():
         shown = {name: cell for name, cell in zip(names, row, strict=True) if name not in own}
         for name, cell in list(shown.items())[1:]:
             assert float(cell) == pytest.approx(float(systems[columns[name]]), abs=6e-5)
-    heads, _, *searched = _rows(like.splitlines())
+    heads, _, *searched = _rows(PAGES["inputs"].splitlines())
     places = [
         next(i for i, head in enumerate(heads) if head.startswith(words))
         for words in ("paper, printed", "six terms, searched", "six terms, by gradient")

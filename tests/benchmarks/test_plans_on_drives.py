@@ -39,7 +39,7 @@ def drive_of(machine, recorded):
     ("machine", "recorded", "hertz", "damping"),
     [
         (GANTRY, "held", 4.5, 0.006),  # as its base is held
-        (GANTRY, "moving", 4.484, 0.0047),  # docs/drive.md, recorded while the axis moves
+        (GANTRY, "moving", 4.484, 0.0047),  # docs/drive_recording.md, recorded while the axis moves
         (PICKER, "held", 12.0, 0.004),
         (PICKER, "moving", 11.866, 0.0046),
     ],

@@ -40,7 +40,9 @@ SEARCH_OF_PYMOO, FRONT = blocks("searches", "python")
 (FOUR_OBJECTIVES,) = blocks("objectives", "python")
 ROBUSTNESS, ROBUST = blocks("robustness", "python")
 (PICTURE,) = blocks("pictures", "python")
-COUNTS, CRANE, ANGLES, GANTRY = blocks("plants", "python")
+(COUNTS,) = blocks("plants", "python")
+CRANE, ANGLES = blocks("own_plant", "python")
+(GANTRY,) = blocks("several_joints", "python")
 (ROBOT,) = blocks("robots", "python")
 ROBOT_FILES = {
     block.split(maxsplit=2)[1]: block for block in blocks("robots", "text") if block[0] == "#"
@@ -177,7 +179,7 @@ def test_plain_casadi_finds_what_the_page_says(run_python):
 
 
 def test_a_plant_of_two_joints_takes_what_the_page_says(run_python):
-    (joules,) = re.findall(r"^It takes ([\d.]+) J\.$", PAGES["plants"], re.MULTILINE)
+    (joules,) = re.findall(r"^It takes ([\d.]+) J\.$", PAGES["several_joints"], re.MULTILINE)
     assert run_python(GANTRY) == f"{joules} J\n"
 
 

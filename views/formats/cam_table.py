@@ -91,7 +91,7 @@ _LAYOUTS: Mapping[str, Layout] = {
     "kollmorgen": Layout(lambda cam: _lines(_kollmorgen(cam)), SPLINE),
     "rockwell": Layout(lambda cam: _lines(["Master,Slave,Type", *_rows(cam, ",", "1")]), SPLINE),
 }
-"""Layouts by their names; docs/controllers.md says where each is described. None was tried."""
+"""Layouts by their names; docs/cams.md says where each is described. None was tried."""
 
 
 class CamTable(ExportFormat):

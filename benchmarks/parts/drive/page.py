@@ -1,4 +1,4 @@
-"""Write docs/drive.md from the runs in the csv: its tables, and the figures of its sentences."""
+"""Write the pages of the real drive from the csv: tables, and the figures of sentences."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ import jinja2
 
 ROOT = Path(__file__).parents[3]
 RESULTS = ROOT / "benchmarks" / "results" / "real_drive.csv"
-PAGE = ROOT / "docs" / "drive.md"
-TEMPLATE = Path(__file__).with_name("page.md")
+TEMPLATES = Path(__file__).with_name("pages")
+PAGES = {place.stem: ROOT / "docs" / place.name for place in sorted(TEMPLATES.glob("*.md"))}
+"""Pages of docs that are written from the csv, each from the template of its name."""
 MACHINES = ("gantry", "picker")
 LARGEST = {"gantry": 900.0, "picker": 180.0}
 """Forces at which the drives saturate [N]."""
@@ -147,18 +148,14 @@ class Runs:
         rows = self.where(machine=machine, study=study, value=value)
         return all(row.peak_force_n >= LARGEST[machine] for row in rows)
 
-    def drives(self, machine: str, *, hunting: bool = False) -> list[str]:
-        """The drives on which the margins were tried: those that are calm, or that hunt."""
+    def drives(self, machine: str) -> list[str]:
+        """The drives on which the margins were tried, without those that hunt."""
         rows = self.where(machine=machine, study="every drive")
         return [
             drive
             for drive in dict.fromkeys(row.value for row in rows)
-            if self.hunts(machine, "every drive", drive) is hunting
+            if not self.hunts(machine, "every drive", drive)
         ]
-
-    def hunting_words(self, machine: str) -> str:
-        """The drives that hunt, in words."""
-        return listed(map(described, self.drives(machine, hunting=True)))
 
     def quiet(self, machine: str, margin: int | None) -> list[str]:
         """Drives whose tool stays within the band at every error; without a margin by ZVD."""
@@ -261,6 +258,7 @@ class Runs:
             for value in dict.fromkeys(row.value for row in found):
                 by_motion = {row.motion: row for row in found if row.value == value}
                 name = words.format(f"{float(value) * unit:.3g}")
+                name = name.removeprefix("a ").removeprefix("an ")
                 if self.hunts(machine, study, value):
                     name += ", hunts"
                 rows.append([name, *(cell(by_motion.get(motion)) for motion in shown)])
@@ -327,14 +325,17 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def written(path: Path = RESULTS) -> str:
-    """The page as the csv has it."""
+def written(name: str, path: Path = RESULTS) -> str:
+    """Return the text of one of `PAGES`, from the csv."""
     template = jinja2.Template(
-        TEMPLATE.read_text(), undefined=jinja2.StrictUndefined, keep_trailing_newline=True
+        (TEMPLATES / f"{name}.md").read_text(),
+        undefined=jinja2.StrictUndefined,
+        keep_trailing_newline=True,
     )
     return template.render(runs=Runs(path), percent=percent, length=length, acts=acts)
 
 
 def write() -> None:
-    """Write the page."""
-    PAGE.write_text(written())
+    """Write the pages."""
+    for name, place in PAGES.items():
+        place.write_text(written(name))

@@ -1,4 +1,4 @@
-"""Decide whether a hub swings with the tip: it shifts the frequency (docs/plants.md)."""
+"""Decide whether a hub swings with the tip: it shifts the frequency (docs/soft_hub.md)."""
 
 from __future__ import annotations
 

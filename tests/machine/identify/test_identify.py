@@ -345,7 +345,7 @@ def test_a_real_link_has_its_frequency_and_no_damping():
         for data in [loadmat(path)]
     ]
     found = beam(*each)
-    # how far the decays of 11 standstills scatter; the mean's interval is in docs/machine.md
+    # how far the decays of 11 standstills scatter; the mean's interval is in docs/recordings.md
     assert 1.78 < found.plant.omega / math.tau < 1.87
     assert "zeta" in found.not_identifiable
 

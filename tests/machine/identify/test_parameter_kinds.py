@@ -83,7 +83,7 @@ def test_what_is_no_damping_ratio_is_no_share(folder, done, call):
 
 
 def test_every_damping_ratio_that_is_shipped_is_declared():
-    """The damping ratios are those of the equations in docs/physics.md and docs/plants.md."""
+    """The damping ratios are those of the equations in docs/physics.md and docs/linear_axis.md."""
     declared = {
         name: [one for one, kind in plant.parameter_kinds().items() if kind == "damping"]
         for name, plant in known_plants().items()

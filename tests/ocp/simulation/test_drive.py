@@ -166,7 +166,7 @@ def test_the_set_points_end_at_the_target_once_the_servo_has_settled():
 
 
 def test_the_structure_swings_on_its_servo_as_it_was_recorded_on_the_way():
-    """docs/drive.md recorded 4.484 Hz and 11.866 Hz of beams of 4.5 and 12 Hz on the way."""
+    """docs/drive_recording.md has 4.484 Hz and 11.866 Hz of beams of 4.5 and 12 Hz on the way."""
     on_gantry = mode_on_servo(gantry(), 0.0)
     assert on_gantry.frequency / 2 / np.pi == pytest.approx(4.484, abs=1e-3)
     assert on_gantry.damping == pytest.approx(0.0047, abs=2e-4)

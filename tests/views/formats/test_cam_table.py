@@ -1,4 +1,4 @@
-"""Cams, read back by the descriptions of the tools that docs/controllers.md names."""
+"""Cams, read back by the descriptions of the tools that docs/cams.md names."""
 
 import csv
 import math
