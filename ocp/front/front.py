@@ -219,8 +219,8 @@ class Front(Answer):
         added = further_figures(FRONT, self.task)
         values = [self.figure_values(figure) for figure in added]
         head = (
-            f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",
-            "energy F2 [J]",
+            f"residual within {self.task.residual_window:.4g} s [{unit}]",
+            "energy [J]",
             *(f"{objective.label} [{objective.unit}]" for objective in self._peaks),
             *(f"{figure.label_on(plant)} [{figure.unit_on(plant) or '-'}]" for figure in added),
             f"shadow price [J/{unit}]",

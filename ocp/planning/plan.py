@@ -264,8 +264,8 @@ class Plan(MotionAnswer):
         rows = {
             "plant": task.plant.name,
             "move": f"{task.ends} in {task.duration:g} s",
-            "energy F2": f"{motion.energy:.5g} J",
-            f"residual vibration F1 within {task.residual_window:.4g} s": residual,
+            "energy": f"{motion.energy:.5g} J",
+            f"residual vibration within {task.residual_window:.4g} s": residual,
             **self._robust_rows(),
             "limits": ", ".join(map(str, task.limits)) or "-",
             **peaks,

@@ -42,7 +42,8 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
     None without any.
     """
     if given.path is not None:
-        given.refuse(["start", "target", *LINE_NAMES], "is in the file of --path")
+        given.refuse(["start", "target"], "is in the file of --path")
+        given.refuse([*LINE_NAMES], "is for a straight line from --start, without --path")
         if given.blend is not None:
             return _blended(given, robot)
         tolerance = _tolerance(given, robot)

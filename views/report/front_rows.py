@@ -77,7 +77,7 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str
         corner = values_words(objectives_on(task.plant, fronts[0].objectives), fronts[0].reference)
         lines += [
             f"energy within {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles)",
-            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to {corner}, "
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the area up to {corner}, "
             "median (quartiles)",
         ]
     for front in fronts:

@@ -28,7 +28,7 @@ def function_lines(fronts: Sequence[Front]) -> list[str]:
     lines.append(f"values are those that the function {function.name} gave")
     if len(fronts) > 1 and len({front.reference for front in fronts}) == 1:
         lines.append(
-            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to its "
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the area up to its "
             "reference, median (quartiles)"
         )
     return lines

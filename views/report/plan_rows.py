@@ -166,7 +166,7 @@ def path_rows(candidate: JudgedMotion, path: RecordedPath) -> list[Row]:
         residual = candidate.perturbed(errors).residual
         words = _tip(task, residual)
         rows.append(("residual", f"{words} with {_signed(errors)}"))
-    return [*rows, ("verified", "by CVODES alone, along the spline")]
+    return [*rows, ("verified", "by one integrator alone (CVODES), along the spline")]
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
@@ -224,8 +224,9 @@ def _verified_row(plan: Plan, verbose: bool) -> Row:
         return "verified", _SECOND + f", within {differ}" * verbose
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
-        f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
-        f"where {AGREEMENT:g} of each is agreement; give {remedy}"
+        f"the two integrators, CVODES and {check.steps} fixed steps, differ by {differ} in "
+        f"residual, where {AGREEMENT:g} of each is agreement; the figures are those of CVODES; "
+        f"give {remedy}"
     )
 
 

@@ -681,9 +681,16 @@ def _rows(values: ArrayLike, most: int = MOST_WAYPOINTS) -> Array:
         rows = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         rows = np.zeros(0)
-    if rows.ndim != 2 or len(rows) < 2 or not rows.size or not np.all(np.isfinite(rows)):
+    if rows.ndim != 2 or len(rows) < 2 or not rows.size:
         raise ValueError(
             "the waypoints are no table; give two rows or more, with a number for each joint"
+        )
+    unusable = np.argwhere(~np.isfinite(rows))
+    if len(unusable):
+        row, column = unusable[0]
+        raise ValueError(
+            f"waypoint {row + 1} has {rows[row, column]:g} for its joint {column + 1}; give a "
+            "finite number, or leave the waypoint out"
         )
     if len(rows) > most:
         raise ValueError(
