@@ -165,7 +165,7 @@ class Archive:
         return np.concatenate(blocks)[self._front]
 
     def share_of_box(self) -> float:
-        """Share of the reference box that is dominated."""
+        """Share of the reference area that is dominated."""
         self._let_enter()
         points = self._objectives
         if len(self.names) > len(RESIDUAL_AND_ENERGY):  # of all, it would take longer than a search

@@ -240,7 +240,7 @@ class _Move:
         if self.bound is None and profile.default_bound is None:
             papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
             raise ValueError(
-                f"{method} searches a box: give a bound on the coefficients (the paper used "
+                f"{method} searches within bounds: give one of the coefficients (the paper used "
                 f"{papers})"
             )
         return MoveFunction(
@@ -478,7 +478,7 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
 
 
 def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
-    """Coefficients of a front within the box of a search."""
+    """Coefficients of a front within the bounds of a search."""
     same = front.profile == function.profile
     if not function.of_model:  # of a function the box may be another
         same = front.coefficients.shape[1] == len(function.variables)

@@ -13,7 +13,7 @@ from pymoo.util.display.multi import MultiObjectiveOutput
 
 
 class RandomSearch(Algorithm):
-    """Every generation is drawn anew, uniformly over the box; what none dominates is kept."""
+    """Every generation is drawn anew, uniformly over the bounds; what none dominates is kept."""
 
     pop: Any  # for the type checker: pymoo declares these as optional
     opt: Any

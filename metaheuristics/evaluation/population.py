@@ -16,7 +16,7 @@ from quietarm.ocp.simulation.mesh import default_steps
 CANDIDATE_STEPS = 24
 """Least steps of every search."""
 ACCURACY = 5e-4
-"""Residuals and energies of random candidates in the boxes of all named problems are within this
+"""Residuals and energies of random candidates within the bounds of all named problems are within this
 share of those of much finer steps; docs/measures.md has what was measured."""
 UNUSABLE = 1e30
 """A figure from here up counts as not finite. This value replaces it, because algorithms can sort

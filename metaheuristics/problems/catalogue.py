@@ -330,7 +330,7 @@ def _problem(
 
 
 def _named_problems() -> tuple[NamedProblem, ...]:
-    """Six terms and no limits where nothing else is said; boxes of the paper, eqs (12) and (17)."""
+    """Six terms and no limits where nothing else is said; bounds of the paper, eqs (12) and (17)."""
     link = SingleLinkManipulator()
     arm = ArmOnFlexibleLink()
     dual_link = DualLinkManipulator()

@@ -240,7 +240,7 @@ def refuse_beyond_box(
     bound: float | None,
     remedy: str = "; correct it, or state a wider bound",
 ) -> None:
-    """Refuse coefficients beyond the box of a profile for the bound that is stated."""
+    """Refuse coefficients beyond the bounds of a profile for the bound that is stated."""
     if bound is None:
         return
     most = positive("its bound", bound)

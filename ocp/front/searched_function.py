@@ -1,4 +1,4 @@
-"""The box and the names that a front of a user's own function has in the place of a task."""
+"""The bounds and the names that a front of a user's own function has in the place of a task."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class NoTaskError(QuietarmError, ValueError, AttributeError):
 
 @dataclass(frozen=True)
 class SearchedFunction:
-    """A function of coefficients, as a file keeps it: its name, its box and what it returns.
+    """A function of coefficients, as a file keeps it: its name, its bounds and what it returns.
 
     It stands where a front of a move has its task and its profile. The function itself is not in
     it: no file holds what could be run.
@@ -133,7 +133,7 @@ def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float,
     for side, value in sides.items():
         if value is None:
             raise ValueError(
-                f"{side} is missing; give lower= and upper=, the box of the function's "
+                f"{side} is missing; give lower= and upper=, the bounds of the function's "
                 "coefficients, or set them as attributes of the function"
             )
         rows[side] = numbers(side, value, "a number for each coefficient")

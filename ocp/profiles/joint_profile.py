@@ -106,7 +106,7 @@ class JointProfile(ABC):
         return -largest, largest
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the box of the gradient's random starts, like `box` but finite."""
+        """Return the bounds of the gradient's random starts, like `box` but finite."""
         return self.box(self.unbounded_spread if bound is None else bound)
 
     @property

@@ -196,7 +196,7 @@ class Programs:
         self._constrain(first.bounds_residual)
 
     def _constrain(self, bounds_residual: bool) -> None:
-        """Everything that is bounded, the box last."""
+        """Everything that is bounded, the bounds last."""
         constraints = dict[str, _Constraint]()
         if bounds_residual:
             limit = np.array([entry.residual_limit for entry in self._problems])

@@ -143,7 +143,7 @@ def _solve(
 def _least_violation(
     table: Array, most: Array, least: Array, radius: float, m: int, hard: NDArray[np.bool_]
 ) -> Array:
-    """The step in a box that makes the largest violation of linearised constraints least.
+    """The step within bounds that makes the largest violation of linearised constraints least.
 
     The violation t is one more unknown; hard constraints, the last ones, are kept.
     """

@@ -321,8 +321,8 @@ def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
     for row, column in beyond(table, lower, upper):
         raise ValueError(
             f"a run of {front.record.method} has a_{column + 1} = {table[row, column]:.4g}, and "
-            f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within that "
-            "box, or leave the run out"
+            f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within "
+            "these bounds, or leave the run out"
         )
 
 

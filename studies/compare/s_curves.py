@@ -22,9 +22,9 @@ from quietarm.ocp.simulation.free_vibration import FreeVibration
 
 Array = NDArray[np.float64]
 CRUISE, RAMP, ROUNDING = range(3)
-"""Boxes of a tuned S-curve: an S-curve's speed is three of them, convolved."""
+"""Pulses of a tuned S-curve: an S-curve's speed is three of them, convolved."""
 _MULTIPLES = (1, 2, 3)
-"""Periods that a box may be long."""
+"""Periods that a pulse may be long."""
 
 
 def bounds_of(task: PointToPoint) -> RigidBounds:
@@ -111,7 +111,7 @@ def tuned_s_curve(
 
 
 def _fixed_boxes(periods: Sequence[float], count: int) -> Iterator[Mapping[int, float]]:
-    """Every choice of boxes that are multiples of the periods, each period's a box of its own."""
+    """Every choice of pulses that are multiples of the periods, one of them for each period."""
     for places in permutations(range(count), len(periods)):
         for multiples in product(_MULTIPLES, repeat=len(periods)):
             yield {

@@ -169,7 +169,7 @@ class Reproduction:
             },
             case.search_label: self.searched[case, SIX_TERMS].middle
             or "the middle seed has no such small residual",
-            "gradient, in the box": self.in_box(case, SIX_TERMS),
+            "gradient, within the bounds": self.in_box(case, SIX_TERMS),
             "gradient": self.free(case, SIX_TERMS),
             "robust plan": self.answers[Piece("robust", case)],
             "free motion": self.floor(case),
