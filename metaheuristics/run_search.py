@@ -231,7 +231,7 @@ class _Move:
     threads: int
 
     def function(self, method: str) -> ProblemFunction:
-        """Build its function; ValueError where there is no box."""
+        """Build its function; ValueError where there are no bounds."""
         # not at the top: pymoo and all that it takes is loaded for a search alone
         from quietarm.metaheuristics.problems.function import MoveFunction
 

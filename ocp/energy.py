@@ -23,7 +23,7 @@ def power_of(torque: Any, speed: Any) -> Any:
 
 
 class Energy(ABC):
-    """F2 of a move [J]: the integral of `absolute` * abs(torque * speed) + `smooth`.
+    """The energy of a move [J]: the integral of `absolute` * abs(torque * speed) + `smooth`.
 
     A new energy is a frozen dataclass of numbers, with a name. They add, and take weights.
     """

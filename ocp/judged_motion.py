@@ -121,12 +121,12 @@ class JudgedMotion(ActingMotion):
 
     @property
     def energy(self) -> float:
-        """The task's energy F2 [J]."""
+        """The task's energy [J]."""
         return self._run.energy
 
     @cached_property
     def residual(self) -> float:
-        """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
+        """Residual: largest tip displacement after arrival from the wanted free vibration [m]."""
         missed = self.task.missed(self.arrival)
         pairs = zip(self.scenarios, missed)
         return max(float(motion.vibration.peak(state)) for motion, state in pairs)

@@ -151,7 +151,7 @@ class PointToPoint:
         States at the start (of every scenario) and wanted on arrival; at rest by default. The
         residual is measured from the free vibration that begins with `final`.
     energy : Energy, optional
-        What counts as F2; the paper's absolute power by default.
+        What counts as energy; the paper's absolute power by default.
     uncertainty : Uncertainty, optional
         Ranges of the plant's parameter errors; none by default.
     bounds : mapping of str to bounds, optional

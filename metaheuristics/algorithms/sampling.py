@@ -40,7 +40,7 @@ class RandomSearch(Algorithm):
 
 
 class LatinHypercubes(RandomSearch):
-    """Every generation is a latin hypercube over the box, the most even of some."""
+    """Every generation is a latin hypercube over the bounds, the most even of some."""
 
     def __init__(self, population: int = 100) -> None:
         super().__init__(population, LHS())

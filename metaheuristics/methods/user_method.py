@@ -31,7 +31,7 @@ class AskTell(Protocol):
         ...
 
     def ask(self) -> ArrayLike:
-        """Candidates within the box, shape (candidates, variables); none to end."""
+        """Candidates within the bounds, shape (candidates, variables); none to end."""
         ...
 
     def tell(self, candidates: ArrayLike, objectives: NDArray, violations: NDArray) -> None:

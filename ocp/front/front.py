@@ -156,12 +156,12 @@ class Front(Answer):
 
     @property
     def residuals(self) -> NDArray[np.float64]:
-        """F1 of every point [m]."""
+        """Residual of every point [m]."""
         return np.array([point.residual for point in self.points])
 
     @property
     def energies(self) -> NDArray[np.float64]:
-        """F2 of every point [J]."""
+        """Energy of every point [J]."""
         return np.array([point.energy for point in self.points])
 
     @property

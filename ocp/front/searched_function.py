@@ -127,7 +127,7 @@ _OF_TASKS = frozenset(vars(JointProfile)) | frozenset(PointToPoint.__dataclass_f
 
 
 def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """The sides of a box, as many numbers each; one of them may be a single number."""
+    """The lower and upper bounds, as many numbers each; one of them may be a single number."""
     sides = {"lower": lower, "upper": upper}
     rows = dict[str, NDArray[np.float64]]()
     for side, value in sides.items():

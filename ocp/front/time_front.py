@@ -48,7 +48,7 @@ class TimedPoint:
     acts_after : float
         When the tool may act in the worst case [s].
     energy : float
-        F2 [J].
+        Energy [J].
     coefficients : tuple of float
         The profile's.
     """
@@ -94,7 +94,7 @@ class TimeFront(Answer):
 
     @property
     def energies(self) -> NDArray[np.float64]:
-        """F2 of every point [J]."""
+        """Energy of every point [J]."""
         return np.array([point.energy for point in self.points])
 
     @property

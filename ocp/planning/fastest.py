@@ -87,8 +87,8 @@ def fastest_move(
         of the fastest motion changes: it can cruise, and comes within 1 % of the least time. Along
         another profile the task's duration is where the search begins.
     residual_limit : float, optional
-        Largest F1 [m]; 0, the default, requires rest on arrival. For an uncertain task the default
-        is `fastest_residual_limit`, whatever the duration.
+        Largest residual [m]; 0, the default, requires rest on arrival. For an uncertain task the
+        default is `fastest_residual_limit`, whatever the duration.
     bound, seed, steps, solver
         As for `plan_move`; each duration has one start, the fastest motion on the spline, or the
         last feasible one.

@@ -259,7 +259,7 @@ class Programs:
         return x
 
     def coefficients(self, x: Array) -> Array:
-        """The coefficients of unknowns, within their box, which rounding may pass."""
+        """The coefficients of unknowns, within their bounds, which rounding may pass."""
         return np.clip(x[:, : self._size] @ self._axes.T, *self._box)
 
     def split(self, bounded: Array) -> dict[str, Array]:

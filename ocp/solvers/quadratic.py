@@ -71,7 +71,7 @@ class Steps(NamedTuple):
 
 
 def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear: int) -> Steps:
-    """Steps that minimise quadratic models within linearised constraints and in a box.
+    """Steps that minimise quadratic models within linearised constraints and bounds.
 
     The Hessians are convex, `radius` is half the sides of the boxes. Where the constraints cannot
     be met, the step makes their violation least; the last `linear` of what is bounded are kept all

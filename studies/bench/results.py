@@ -315,7 +315,7 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
 
 
 def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
-    """Refuse a front with a point that is not in the problem's box."""
+    """Refuse a front with a point that is not within the problem's bounds."""
     lower, upper = problem.profile.box(problem.bound)
     table = front.coefficients
     for row, column in beyond(table, lower, upper):

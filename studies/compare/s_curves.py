@@ -132,7 +132,7 @@ def _least_products(span: float, bounds: RigidBounds) -> list[float]:
 def _best_boxes(
     least: Sequence[float], fixed: Mapping[int, float], duration: float | None
 ) -> tuple[float, ...] | None:
-    """Lengths of boxes, some of them fixed, of the least sum; None if none fit.
+    """Lengths of pulses, some of them fixed, of the least sum; None if none fit.
 
     With a duration they take that long, and the acceleration is the least. In the logarithms of the
     lengths both are convex programs: products are linear, and the sum of boxes, and their order, in
@@ -193,7 +193,7 @@ def _best_boxes(
 
 
 def _of_boxes(span: float, boxes: Sequence[float]) -> FreeMotion:
-    """The motion whose speed is boxes, convolved, over a way."""
+    """The motion whose speed is pulses, convolved, over a way."""
     jumps = dict[float, float]()
     for chosen in (some for k in range(len(boxes) + 1) for some in combinations(boxes, k)):
         sign = -1.0 if len(chosen) % 2 else 1.0

@@ -129,15 +129,15 @@ class Reproduction:
         return evaluate_coefficients(case.task, [])
 
     def same_residual(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan in the paper's box, with the residual limit of the search."""
+        """The gradient's plan within the paper's bounds, with the residual limit of the search."""
         return self.answers[Piece("gradient, same residual", case, terms)]
 
     def in_box(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan in the paper's box, at rest."""
+        """The gradient's plan within the paper's bounds, at rest."""
         return self.answers[Piece("gradient, in box", case, terms)]
 
     def free(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan without a box, at rest."""
+        """The gradient's plan without bounds, at rest."""
         return self.answers[Piece("gradient, no box", case, terms)]
 
     def earlier(self, case: Case) -> Plan | None:
@@ -307,7 +307,7 @@ def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> F
 
 
 def _checked(case: Case, points: int) -> CrossCheck:
-    """Points of the front in the paper's box, by both solvers of the gradient."""
+    """Points of the front within the paper's bounds, by both solvers of the gradient."""
     profile = CycloidPolynomial(SIX_TERMS)
     return cross_check(
         epsilon_front(

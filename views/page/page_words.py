@@ -40,7 +40,7 @@ class ShownFigures:
 
     @classmethod
     def of(cls, plan: Plan, residual: float, energy: float) -> Self:
-        """Return the figures of a motion, with F1 and F2 as its front states them."""
+        """Return the figures of a motion, with residual and energy as its front states them."""
         values = {
             figure.name: plan.figures.get(figure.name, nan)
             for figure in figures_in(PAGE, plan.task)

@@ -219,12 +219,12 @@ def _kept_words(
 
 
 def _move(given: Given) -> _Asked:
-    """The move that was typed, with its profile and its box."""
+    """The move that was typed, with its profile and its bounds."""
     given.refuse(["lower", "upper"], "is for --function, and this is a move with a --bound")
     task = given.read_task()
     profile = given.read_profile(task)
     if given.bound is None and profile.default_bound is None:
-        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
+        papers = ", ".join(f"{bound:g} for {plant}" for plant, bound in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
