@@ -50,7 +50,7 @@ class SearchProgress:
     residual, energy : float
         Least residual [m] and least energy [J] found, of different candidates as a rule.
     hypervolume : float
-        Share of the reference box that is dominated.
+        Share of the reference area that is dominated.
     evaluations, failed, infeasible : int
         Candidates evaluated, and those among them that were not finite, and that violated a limit.
     seconds : float
@@ -370,6 +370,7 @@ class SearchRun:
         first = np.empty((0, len(function.variables)))
         if start is not None:
             first = _starts(start, function)
+            function.archive.measure_from(start.reference)  # as the hypervolume of the start
         return cls(function, method, chosen, limits, stated, generations, seed, first)
 
     def finish(self, report: Callable[[SearchProgress], None] | None = None) -> None:
@@ -480,14 +481,14 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
 def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
     """Coefficients of a front within the bounds of a search."""
     same = front.profile == function.profile
-    if not function.of_model:  # of a function the box may be another
+    if not function.of_model:  # of a function the bounds may be others
         same = front.coefficients.shape[1] == len(function.variables)
     if not same:
         raise ValueError("the front to start from has another profile; give one of the search's")
     table = front.coefficients
     if ((table < function.lower) | (table > function.upper)).any():
-        box = "bounds" if function.bound is None else f"bound of {function.bound:g}"
-        raise ValueError(f"the front to start from is beyond the {box}; give a wider one")
+        bounds = "bounds" if function.bound is None else f"bound of {function.bound:g}"
+        raise ValueError(f"the front to start from is beyond the {bounds}; give a wider one")
     return table
 
 

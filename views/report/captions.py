@@ -176,9 +176,12 @@ def caption_of_fronts(fronts: Sequence[Front], level: float = SEARCH_RESIDUAL) -
     reached = [energy for energy in energies if energy < float("inf")]
     if not reached:
         return f"None of {len(fronts)} seeds comes within {within}"
+    least, most = (f"{energy:.4g}" for energy in (min(reached), max(reached)))
+    verb = "takes" if len(reached) == 1 else "take"
+    span = least if least == most else f"{least} to {most}"
     return (
-        f"Within {within}, {len(reached)} of {len(fronts)} seeds take {min(reached):.4g} to "
-        f"{max(reached):.4g} J{spans_of_fronts(fronts, level)}"
+        f"Within {within}, {len(reached)} of {len(fronts)} seeds {verb} {span} J"
+        f"{spans_of_fronts(fronts, level)}"
     )
 
 
