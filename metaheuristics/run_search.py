@@ -316,8 +316,8 @@ class SearchRun:
             raise ValueError("evaluations stand in place of generations; leave one of them out")
         if not of_move and generations is None and evaluations is None:
             raise ValueError(
-                "evaluations is missing; give the number of candidates, as evaluations=1000: a "
-                "function may take long"
+                "evaluations is missing; give the number of candidates, such as evaluations=1000: "
+                "a function may take long"
             )
         if algorithm is None:
             algorithm = (
@@ -531,10 +531,10 @@ def _of_user(
 
     value: Any = algorithm
     if inspect.isclass(value):
-        raise ValueError(f"give an algorithm, as {value.__name__}(), not its class")
+        raise ValueError(f"give an algorithm, such as {value.__name__}(), not its class")
     if not isinstance(value, PymooAlgorithm):
         raise TypeError(
-            f"algorithm is {value!r}; give a name, as 'nsga2', or an algorithm of pymoo"
+            f"algorithm is {value!r}; give a name, such as 'nsga2', or an algorithm of pymoo"
         )
     chosen = copy_of_algorithm(algorithm)
     for name, value in (("population", population), ("settings", settings)):

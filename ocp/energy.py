@@ -28,7 +28,7 @@ class Energy(ABC):
     A new energy is a frozen dataclass of numbers, with a name. They add, and take weights.
     """
 
-    example: ClassVar[str] = "an energy, as AbsolutePower() or CopperLoss(0.12)"
+    example: ClassVar[str] = "an energy, such as AbsolutePower() or CopperLoss(0.12)"
     """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files and the command line know the energy."""

@@ -68,7 +68,7 @@ class JudgedMotion(ActingMotion):
     """
 
     example: ClassVar[str] = (
-        "a motion, as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
+        "a motion, such as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
     )
 
     task: PointToPoint
@@ -99,7 +99,7 @@ class JudgedMotion(ActingMotion):
         """Return this motion on the plant with these relative errors, and on no other."""
         if not isinstance(errors, Mapping):
             raise TypeError(
-                f"errors are {quoted(errors)}; give them by name, as {{'frequency': 0.1}}"
+                f"errors are {quoted(errors)}; give them by name, such as {{'frequency': 0.1}}"
             )
         return replace(self, task=self.task.certain, errors=dict(errors))
 

@@ -108,7 +108,7 @@ class Robot(CheckedRobot):
         there is. Or those of the slowest twelve that leave a thousandth at least of what the most
         excited one leaves on the path.
     limits : mapping, optional
-        Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
+        Limits by quantity and joint, such as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
         A measured frequency, to which all springs are scaled.
     positions : mapping of str to (float, float)
@@ -122,7 +122,7 @@ class Robot(CheckedRobot):
         When the URDF cannot be followed, a name is not in it, or a value is out of range.
     """
 
-    example: ClassVar[str] = "a robot, as Robot.load('robot.yaml')"
+    example: ClassVar[str] = "a robot, such as Robot.load('robot.yaml')"
 
     @classmethod
     @interruptible

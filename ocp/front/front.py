@@ -97,7 +97,7 @@ class Front(Answer):
         coefficients or is not finite, or the points are out of order, or one is dominated.
     """
 
-    example: ClassVar[str] = "a front, as Front.load('front.json')"
+    example: ClassVar[str] = "a front, such as Front.load('front.json')"
     kind: ClassVar[str] = "front"
     version: ClassVar[int] = 5
     read_by_2_0 = (4,)

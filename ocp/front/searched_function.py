@@ -166,7 +166,7 @@ def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float,
 
 def _checked_names(what: str, names: Any) -> tuple[str, ...]:
     """Names of objectives or constraints, each once."""
-    entries = several(what, names, "names, as ['residual', 'energy']")
+    entries = several(what, names, "names, such as ['residual', 'energy']")
     for name in entries:
         if not isinstance(name, str) or not name.strip() or len(name) > _LONGEST:
             raise ValueError(
@@ -179,12 +179,12 @@ def _checked_names(what: str, names: Any) -> tuple[str, ...]:
 
 def _checked_units(units: Any, objectives: Sequence[str]) -> tuple[str, ...]:
     """A unit of each objective; the usual ones of residual and energy where none are stated."""
-    stated = several("units", units, "a unit for each objective, as ['m', 'J']")
+    stated = several("units", units, "a unit for each objective, such as ['m', 'J']")
     if not stated:
         return tuple(_USUAL_UNITS.get(name, "") for name in objectives)
     for unit in stated:
         if not isinstance(unit, str) or len(unit) > _LONGEST:
-            raise ValueError(f"one of the units is {quoted(unit)}; give a word, as 'm', or ''")
+            raise ValueError(f"one of the units is {quoted(unit)}; give a word, such as 'm', or ''")
     if len(stated) != len(objectives):
         raise ValueError(
             f"{len(objectives)} objectives have {len(stated)} units; give one for each"

@@ -77,7 +77,7 @@ class TimeFront(Answer):
         Durations in which no plan was found, and why.
     """
 
-    example: ClassVar[str] = "a front of time and energy, as TimeFront.load('time.json')"
+    example: ClassVar[str] = "a front of time and energy, such as TimeFront.load('time.json')"
     kind: ClassVar[str] = "time-front"
     version: ClassVar[int] = 1
 

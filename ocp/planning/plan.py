@@ -74,7 +74,7 @@ class Plan(MotionAnswer):
         The executed moves that it was learned from by `quietarm.learn`; None of any other plan.
     """
 
-    example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
+    example: ClassVar[str] = "a plan, such as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
     version: ClassVar[int] = 5
     read_by_2_0 = (4,)

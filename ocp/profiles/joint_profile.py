@@ -35,7 +35,7 @@ class JointProfile(ABC):
         When a subclass overrides `motion` or `path`.
     """
 
-    example: ClassVar[str] = "a profile, as CycloidPolynomial(6) or CycloidSpline(12)"
+    example: ClassVar[str] = "a profile, such as CycloidPolynomial(6) or CycloidSpline(12)"
     """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files know the family."""

@@ -47,8 +47,8 @@ if TYPE_CHECKING:
 
 Row = tuple[str, str]
 HARD_REMEDIES: Mapping[str, str] = {
-    "acceleration": "give what the drive can do, as --acceleration-limit or --torque-limit",
-    "jerk": "give what the drive can do, as --jerk-limit",
+    "acceleration": "give what the drive can do, such as --acceleration-limit or --torque-limit",
+    "jerk": "give what the drive can do, such as --jerk-limit",
 }
 """What to do about a peak that a drive may not follow, by quantity."""
 _OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}

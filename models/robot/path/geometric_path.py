@@ -91,7 +91,7 @@ class GeometricPath:
         When it is no path: not from 0 to 1, of length 0, or with a corner.
     """
 
-    example: ClassVar[str] = "a path, as GeometricPath.line(q0, q1)"
+    example: ClassVar[str] = "a path, such as GeometricPath.line(q0, q1)"
 
     knots: tuple[float, ...]
     coefficients: tuple[tuple[tuple[float, ...], ...], ...]
@@ -428,7 +428,7 @@ class GeometricPath:
             raise ValueError(
                 f"{len(corners)} of its points are needed to stay within {tolerance:.3g} rad "
                 f"(or m) of the lines between all; a path has {MOST_WAYPOINTS // 2} at most: "
-                "give a larger tolerance, as --path-tolerance 0.5deg, or a part of the path"
+                "give a larger tolerance, such as --path-tolerance 0.5deg, or a part of the path"
             )
         _check_turns(corners)
         left_out = np.linalg.norm(points - nearest_on_lines(points, corners), axis=1).max()
