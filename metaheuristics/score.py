@@ -202,7 +202,7 @@ class InvertedDistance(Indicator):
 
     name = "igd_plus"
     label = "IGD+"
-    meaning = "mean distance by which the reference front is missed, in units of its extent"
+    meaning = "mean distance by which a front is worse than the reference, in units of its extent"
 
     def value(self, points: Array, scale: Scale) -> float:
         """The mean."""
@@ -214,7 +214,7 @@ class AdditiveEpsilon(Indicator):
 
     name = "epsilon"
     label = "additive epsilon"
-    meaning = "worst miss of the reference front, in units of its extent"
+    meaning = "least shift by which a front would dominate the reference, in units of its extent"
 
     def value(self, points: Array, scale: Scale) -> float:
         """The shift."""

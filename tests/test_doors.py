@@ -132,7 +132,7 @@ def test_something_else_is_told_what_to_give(right, function, name, kind, many):
             "give an object, such as ShapedCycloid(shaper, frequencies, damping_ratios)",
         ),
         ("cycloid-spline", "give an object, such as CycloidSpline()"),
-        ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, as"),
+        ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, such as"),
     ],
 )
 def test_a_profile_is_an_object(right, profile, told):
@@ -229,7 +229,7 @@ def test_one_move_is_no_list_of_moves(right):
 
 
 def test_an_energy_adds_to_energies_alone():
-    with pytest.raises(TypeError, match="part of a mix is 3; give an energy, as"):
+    with pytest.raises(TypeError, match="part of a mix is 3; give an energy, such as"):
         qa.ocp.Mix(((1.0, qa.AbsolutePower()), (1.0, 3)))
 
 

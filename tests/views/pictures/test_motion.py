@@ -171,7 +171,7 @@ def test_the_titles_of_joints_side_by_side_stay_apart_and_the_head_is_as_wide_as
 
 def test_a_panel_of_the_users_is_checked(task, what_is_made_up_is_forgotten):
     plan = evaluate_coefficients(task, [])
-    with pytest.raises(ValueError, match="panel mine has no title; give one, such as title = "):
+    with pytest.raises(ValueError, match="panel mine has no title; give one, as title = "):
         type("Mine", (Panel,), {"name": "mine"})
     with pytest.raises(ValueError, match=r"panel mine draws nothing; define values\(self"):
         type("Mine", (Panel,), {"name": "mine", "title": "a"})
