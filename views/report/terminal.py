@@ -110,7 +110,7 @@ def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
 EXPLANATION = "## How to read it\n"
 """The heading of what a report explains, which is in its files alone."""
 EXPLAINED = (
-    "Less is better in all columns of indicators; the page of --output FOLDER explains them.\n"
+    "Less is better in hypervolume gap, IGD+ and additive epsilon; --output FOLDER explains them.\n"
 )
 
 
