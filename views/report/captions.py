@@ -146,7 +146,7 @@ def caption_of_front(front: Front) -> str:
     if not front.points:
         return "No point of this front was found"
     stillest = front.points[0]
-    cheapest = front.points[-1]
+    cheapest = min(front.points, key=lambda point: point.energy)
     worst = worst_of(front.judged(stillest))
     still = scenarios_words(stillest.residual, worst, front.task)
     still = "at rest" if still == "rest" else f"with {still}"
