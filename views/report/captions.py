@@ -21,6 +21,7 @@ from quietarm.views.tips import tip_words
 if TYPE_CHECKING:
     from quietarm.studies.compare.compared_motions import ComparedMotion
 
+_WORST = " in the worst case"
 _MOST_SAID = 3
 """Of more motions a sentence says only between which figures they are."""
 
@@ -44,7 +45,7 @@ def caption_of_judged(motions: Sequence[ComparedMotion]) -> str:
         words = left_words(left, judged.task)
         if judged.worst is not None:
             left = judged.worst.residual
-            words = f"{left_words(left, judged.task)} in the worst case"
+            words = f"{left_words(left, judged.task)}{_WORST}"
         if judged.motion.candidate is not None:
             words = ", ".join([words, *further_words(judged.motion.candidate, CAPTION)])
         left = 0.0 if is_at_rest(left, judged.task) else left
@@ -81,11 +82,15 @@ def _best_of(said: Sequence[_Said]) -> str:
     cheap = min(said, key=lambda one: one.energy)
     first = f"{_named(still.name)} {still.words} for {still.energy:.3g} J"
     if cheap is still:
-        return f"{first}, the stillest and cheapest of {len(said)} motions"
-    return (
-        f"{first}, the stillest of {len(said)} motions; "
-        f"{_named(cheap.name)} is the cheapest: {cheap.energy:.3g} J, and {cheap.words}"
-    )
+        words = f"{first}, the stillest and cheapest of {len(said)} motions"
+    else:
+        words = (
+            f"{first}, the stillest of {len(said)} motions; "
+            f"{_named(cheap.name)} is the cheapest: {cheap.energy:.3g} J, and {cheap.words}"
+        )
+    if _WORST in words:
+        return f"In the worst case {words.replace(_WORST, '')}"
+    return words
 
 
 def _left_by(motion: Plan | Floor) -> float:
