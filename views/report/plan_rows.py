@@ -243,8 +243,8 @@ def _full_rows(plan: Plan) -> list[Row]:
     return [
         (
             "in full",
-            f"{figures.energy:.4g} J ({share:.0e} from the energy above) and {residual} left, by "
-            f"CVODES on the whole equations, without modes and tables{remedy}",
+            f"{figures.energy:.4g} J ({100 * share:.2g} % from the energy above) and {residual} left, "
+            f"by the whole equations, without modes and tables{remedy}",
         )
     ]
 
