@@ -181,7 +181,7 @@ def ways_of(problem: NamedProblem, kind: type[Function]) -> dict[str, Way]:
     return ways | {
         "gradient, mechanical energy": partial(by_gradient, problem),
         "GDE3 from the gradient's front": partial(begun_there, problem),
-        "SLSQP with differences": partial(slsqp, step=1e-3),
+        "finite-difference SLSQP": partial(slsqp, step=1e-3),
     }
 
 

@@ -74,6 +74,11 @@ class Archive:
             return (1.0,) * len(self.names)
         return tuple(np.concatenate(blocks).max(axis=0).tolist())
 
+    def measure_from(self, corner: tuple[float, ...]) -> None:
+        """Measure hypervolumes from a corner, unless the problem has one of its own."""
+        if self._corner is None and len(corner) == len(self.names):
+            self._corner = corner
+
     @property
     def seconds(self) -> float:
         """Processor time since the beginning, without the archive's and compilation's [s].
@@ -165,7 +170,7 @@ class Archive:
         return np.concatenate(blocks)[self._front]
 
     def share_of_box(self) -> float:
-        """Share of the reference box that is dominated."""
+        """Share of the reference area that is dominated."""
         self._let_enter()
         points = self._objectives
         if len(self.names) > len(RESIDUAL_AND_ENERGY):  # of all, it would take longer than a search

@@ -145,7 +145,7 @@ class _Patience:
 def scheduler_address(text: str) -> str:
     """The address of a dask scheduler; ValueError where there is none."""
     if not text.strip():
-        raise ValueError("the scheduler's address is empty; give one, as tcp://host:8786")
+        raise ValueError("the scheduler's address is empty; give one, such as tcp://host:8786")
     return text
 
 

@@ -50,7 +50,7 @@ class SearchProgress:
     residual, energy : float
         Least residual [m] and least energy [J] found, of different candidates as a rule.
     hypervolume : float
-        Share of the reference box that is dominated.
+        Share of the reference area that is dominated.
     evaluations, failed, infeasible : int
         Candidates evaluated, and those among them that were not finite, and that violated a limit.
     seconds : float
@@ -231,7 +231,7 @@ class _Move:
     threads: int
 
     def function(self, method: str) -> ProblemFunction:
-        """Build its function; ValueError where there is no box."""
+        """Build its function; ValueError where there are no bounds."""
         # not at the top: pymoo and all that it takes is loaded for a search alone
         from quietarm.metaheuristics.problems.function import MoveFunction
 
@@ -240,7 +240,7 @@ class _Move:
         if self.bound is None and profile.default_bound is None:
             papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
             raise ValueError(
-                f"{method} searches a box: give a bound on the coefficients (the paper used "
+                f"{method} searches within bounds: give one of the coefficients (the paper used "
                 f"{papers})"
             )
         return MoveFunction(
@@ -316,8 +316,8 @@ class SearchRun:
             raise ValueError("evaluations stand in place of generations; leave one of them out")
         if not of_move and generations is None and evaluations is None:
             raise ValueError(
-                "evaluations is missing; give the number of candidates, as evaluations=1000: a "
-                "function may take long"
+                "evaluations is missing; give the number of candidates, such as evaluations=1000: "
+                "a function may take long"
             )
         if algorithm is None:
             algorithm = (
@@ -370,6 +370,7 @@ class SearchRun:
         first = np.empty((0, len(function.variables)))
         if start is not None:
             first = _starts(start, function)
+            function.archive.measure_from(start.reference)  # as the hypervolume of the start
         return cls(function, method, chosen, limits, stated, generations, seed, first)
 
     def finish(self, report: Callable[[SearchProgress], None] | None = None) -> None:
@@ -478,16 +479,16 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
 
 
 def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
-    """Coefficients of a front within the box of a search."""
+    """Coefficients of a front within the bounds of a search."""
     same = front.profile == function.profile
-    if not function.of_model:  # of a function the box may be another
+    if not function.of_model:  # of a function the bounds may be others
         same = front.coefficients.shape[1] == len(function.variables)
     if not same:
         raise ValueError("the front to start from has another profile; give one of the search's")
     table = front.coefficients
     if ((table < function.lower) | (table > function.upper)).any():
-        box = "bounds" if function.bound is None else f"bound of {function.bound:g}"
-        raise ValueError(f"the front to start from is beyond the {box}; give a wider one")
+        bounds = "bounds" if function.bound is None else f"bound of {function.bound:g}"
+        raise ValueError(f"the front to start from is beyond the {bounds}; give a wider one")
     return table
 
 
@@ -530,10 +531,10 @@ def _of_user(
 
     value: Any = algorithm
     if inspect.isclass(value):
-        raise ValueError(f"give an algorithm, as {value.__name__}(), not its class")
+        raise ValueError(f"give an algorithm, such as {value.__name__}(), not its class")
     if not isinstance(value, PymooAlgorithm):
         raise TypeError(
-            f"algorithm is {value!r}; give a name, as 'nsga2', or an algorithm of pymoo"
+            f"algorithm is {value!r}; give a name, such as 'nsga2', or an algorithm of pymoo"
         )
     chosen = copy_of_algorithm(algorithm)
     for name, value in (("population", population), ("settings", settings)):

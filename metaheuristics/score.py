@@ -202,7 +202,7 @@ class InvertedDistance(Indicator):
 
     name = "igd_plus"
     label = "IGD+"
-    meaning = "mean distance by which the reference front is missed, in units of its extent"
+    meaning = "mean distance by which a front is worse than the reference, in units of its extent"
 
     def value(self, points: Array, scale: Scale) -> float:
         """The mean."""
@@ -214,7 +214,7 @@ class AdditiveEpsilon(Indicator):
 
     name = "epsilon"
     label = "additive epsilon"
-    meaning = "worst miss of the reference front, in units of its extent"
+    meaning = "least shift by which a front would dominate the reference, in units of its extent"
 
     def value(self, points: Array, scale: Scale) -> float:
         """The shift."""
@@ -265,9 +265,9 @@ def within(points: Array, residuals: Sequence[float] | Array) -> Array:
 
 
 def share_of_box(points: Array, corner: tuple[float, ...]) -> float:
-    """Share of the box from zero to a corner, of all objectives, that points dominate.
+    """Share of the hypervolume from zero to a corner, of all objectives, that points dominate.
 
-    A user's own function may have objectives below zero: its box begins at the least of these.
+    A user's own function may have objectives below zero: it begins at the least of these.
     """
     if not len(points):
         return 0.0
@@ -279,7 +279,7 @@ def share_of_box(points: Array, corner: tuple[float, ...]) -> float:
 
 
 def shares_of_box(front: Front) -> Array:
-    """Share of the box up to `Front.reference` that was dominated at every mark of a front.
+    """Share of the hypervolume up to `Front.reference` that was dominated at every mark of a front.
 
     Of a search by all candidates that had entered. An earlier file has it as it states it.
     """

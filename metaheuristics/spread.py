@@ -52,7 +52,7 @@ class Spread:
 
 
 def hypervolumes(fronts: Sequence[Front]) -> Spread:
-    """Quartiles of the final hypervolume, as a share of the reference box."""
+    """Quartiles of the final hypervolume, as a share of the area up to the reference."""
     from quietarm.metaheuristics.score import final_share_of_box  # loads moocore
 
     return Spread.of([final_share_of_box(front) for front in fronts])

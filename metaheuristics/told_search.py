@@ -149,8 +149,8 @@ class Search:
     ) -> None:
         if not (algorithm is None or isinstance(algorithm, str | SearchMethod)):
             raise TypeError(
-                f"algorithm is {quoted(algorithm)}; give a name, as 'nsga2', or an object of a "
-                "SearchMethod: the search is begun again from it after a kill"
+                f"algorithm is {quoted(algorithm)}; give a name, such as 'nsga2', or an object of "
+                "a SearchMethod: the search is begun again from it after a kill"
             )
         self._path = None if state is None else check_writable(state)
         self._exchange = _Exchange()

@@ -175,7 +175,7 @@ class Words:
     Of joints of both kinds it is called by both words.
     """
 
-    example: ClassVar[str] = "words, as Words('tip acceleration')"
+    example: ClassVar[str] = "words, such as Words('tip acceleration')"
 
     rotary: str
     linear: str = ""

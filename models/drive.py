@@ -64,7 +64,7 @@ class Drive:
         When a number is out of range, a word unknown, or `recorded` not stated beside both loops.
     """
 
-    example: ClassVar[str] = "a drive, as Drive(position_loop=60, speed_loop=40)"
+    example: ClassVar[str] = "a drive, such as Drive(position_loop=60, speed_loop=40)"
 
     position_loop: float | None = _quantity(SECOND**-1, "gain of the position loop")
     speed_loop: float | None = _quantity(HERTZ, "bandwidth of the speed loop")

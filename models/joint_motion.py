@@ -36,7 +36,7 @@ def kind_of_joints(kinds: Collection[str]) -> str:
 def deg(degrees: float) -> float:
     """An angle in degrees as radians: `PointToPoint(..., target=deg(30))`."""
     if isinstance(degrees, bool) or not isinstance(degrees, Real):
-        raise TypeError(f"degrees are {degrees!r}; give a number, as deg(30)")
+        raise TypeError(f"degrees are {degrees!r}; give a number, such as deg(30)")
     return math.radians(degrees)
 
 

@@ -161,7 +161,7 @@ class Plant(_Driven, ABC):
         When a subclass overrides `parameters`, `units`, `tips` or `validate`.
     """
 
-    example: ClassVar[str] = "a plant, as SingleLinkManipulator() or LinearAxis()"
+    example: ClassVar[str] = "a plant, such as SingleLinkManipulator() or LinearAxis()"
     """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which commands and files know the plant."""
@@ -427,7 +427,7 @@ class Plant(_Driven, ABC):
 
     @property
     def limits(self) -> Mapping[str, Any]:
-        """Limits that its tasks have, by quantity, as {"speed": 3.0}, or by joint; none by default.
+        """Limits that its tasks have, by quantity ({"speed": 3.0}) or by joint; none by default.
 
         Each is as of `PointToPoint`.
         """

@@ -67,7 +67,7 @@ def load_plant_file(path: str | Path) -> Mapping[str, type[Plant]]:
         When it cannot be read or imported, or defines nothing that is complete.
     """
     if not isinstance(path, str | Path):
-        raise TypeError(f"path is {path!r}; give the name of a Python file, as 'plants.py'")
+        raise TypeError(f"path is {path!r}; give the name of a Python file, such as 'plants.py'")
     if Path(path).suffix != ".py":  # a data file may be valid Python, and is not run by mistake
         raise ValueError(f"plant file {path} is not called .py; give a Python file")
     most_bytes = 1_000_000  # some twenty thousand lines

@@ -55,7 +55,7 @@ def first_plan():
 
 @cache
 def plate_front():
-    """The front by limits in the paper's box."""
+    """The front by limits within the paper's bounds."""
     return qa.epsilon_front(MOVE, bound=BOX, points=10)
 
 
@@ -589,7 +589,7 @@ EXERCISES = {
     "05a": (
         Numbers("the energy at rest within 0.13 N m", "mJ", energy_of_a_weak_motor),
         Numbers("the energy for the smallest delta", "mJ", energy_in_a_wide_box, tolerance=0.01),
-        Numbers("the energy F2 of the motion of least heat", "mJ", energy_of_least_heat),
+        Numbers("the energy of the motion of least heat", "mJ", energy_of_least_heat),
     ),
     "05b": (
         Numbers(

@@ -68,7 +68,7 @@ class ActingMotion:
     """A motion of a task that CVODES has judged, as it is asked when its tool may act."""
 
     example: ClassVar[str] = (
-        "a motion, as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
+        "a motion, such as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
     )
 
     @cached_property

@@ -147,7 +147,7 @@ def _instead_of(value: Any, kind: type[Any]) -> str:
         # a class that needs nothing works as it stands in the message
         meant = complete.get(nearest_name(value, complete)) or named.get(nearest_name(value, named))
     if meant is not None:
-        return f"an object, as {_construction(meant)}"
+        return f"an object, such as {_construction(meant)}"
     if isinstance(value, str | PathLike) and hasattr(kind, "load"):
         return f"{kind.__name__}.load({quoted(str(value))})"
     return getattr(kind, "example", f"an object of {kind.__name__}")
@@ -174,7 +174,9 @@ def _needed(kind: type[Any]) -> list[str]:
 def name_of_file(path: Any) -> None:
     """Refuse what names no file; TypeError that says what to give."""
     if not isinstance(path, str | PathLike):
-        raise TypeError(f"path is {reprlib.repr(path)}; give the name of a file, as 'plan.json'")
+        raise TypeError(
+            f"path is {reprlib.repr(path)}; give the name of a file, such as 'plan.json'"
+        )
 
 
 Kind = type[Any] | list[type[Any]] | dict[type[str], type[Any]]
@@ -212,7 +214,9 @@ def _check_kind(name: str, value: Any, kind: Kind) -> None:
     if isinstance(kind, dict):
         if not isinstance(value, Mapping):
             example = f"{{'mine': {name[:-1]}}}"
-            raise TypeError(f"{name} is {reprlib.repr(value)}; give them by name, as {example}")
+            raise TypeError(
+                f"{name} is {reprlib.repr(value)}; give them by name, such as {example}"
+            )
         for key, entry in value.items():
             instance(f"{name} {quoted(key)}", entry, kind[str])
     elif isinstance(kind, list):

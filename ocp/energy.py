@@ -23,12 +23,12 @@ def power_of(torque: Any, speed: Any) -> Any:
 
 
 class Energy(ABC):
-    """F2 of a move [J]: the integral of `absolute` * abs(torque * speed) + `smooth`.
+    """The energy of a move [J]: the integral of `absolute` * abs(torque * speed) + `smooth`.
 
     A new energy is a frozen dataclass of numbers, with a name. They add, and take weights.
     """
 
-    example: ClassVar[str] = "an energy, as AbsolutePower() or CopperLoss(0.12)"
+    example: ClassVar[str] = "an energy, such as AbsolutePower() or CopperLoss(0.12)"
     """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files and the command line know the energy."""

@@ -72,8 +72,8 @@ class Figure:
     """
 
     example: ClassVar[str] = (
-        "a figure, as Figure('rms_torque', EFFORT, Words('RMS torque'), rms('torque')), with unit "
-        "and words of quietarm.models.dimensions"
+        "a figure, such as Figure('rms_torque', EFFORT, Words('RMS torque'), rms('torque')), with "
+        "unit and words of quietarm.models.dimensions"
     )
 
     name: str
@@ -266,7 +266,8 @@ def add_figure(figure: Figure) -> Figure:
         raise ValueError(f"the figure {name!r} is quietarm's own; give yours another name")
     if not name.isidentifier():
         raise ValueError(
-            f"the name of a figure is {quoted(name)}; give letters, digits and _, as rms_torque"
+            f"the name of a figure is {quoted(name)}; give letters, digits and _, such as "
+            "rms_torque"
         )
     _added[name] = figure
     note_added(figure)

@@ -68,7 +68,7 @@ class JudgedMotion(ActingMotion):
     """
 
     example: ClassVar[str] = (
-        "a motion, as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
+        "a motion, such as plan.candidate or JudgedMotion.of_profile(task, profile, a)"
     )
 
     task: PointToPoint
@@ -99,7 +99,7 @@ class JudgedMotion(ActingMotion):
         """Return this motion on the plant with these relative errors, and on no other."""
         if not isinstance(errors, Mapping):
             raise TypeError(
-                f"errors are {quoted(errors)}; give them by name, as {{'frequency': 0.1}}"
+                f"errors are {quoted(errors)}; give them by name, such as {{'frequency': 0.1}}"
             )
         return replace(self, task=self.task.certain, errors=dict(errors))
 
@@ -121,12 +121,12 @@ class JudgedMotion(ActingMotion):
 
     @property
     def energy(self) -> float:
-        """The task's energy F2 [J]."""
+        """The task's energy [J]."""
         return self._run.energy
 
     @cached_property
     def residual(self) -> float:
-        """Largest tip displacement after arrival from the wanted free vibration, F1 [m]."""
+        """Residual: largest tip displacement after arrival from the wanted free vibration [m]."""
         missed = self.task.missed(self.arrival)
         pairs = zip(self.scenarios, missed)
         return max(float(motion.vibration.peak(state)) for motion, state in pairs)

@@ -85,8 +85,8 @@ class Quantity:
     """
 
     example: ClassVar[str] = (
-        "a quantity, as Quantity('tip_haste', TIP / SECOND, Words('tip haste'), lambda sample: "
-        "sample.tip_speeds), with unit and words of quietarm.models.dimensions"
+        "a quantity, such as Quantity('tip_haste', TIP / SECOND, Words('tip haste'), lambda "
+        "sample: sample.tip_speeds), with unit and words of quietarm.models.dimensions"
     )
 
     name: str
@@ -222,7 +222,8 @@ def add_quantity(quantity: Quantity) -> Quantity:
         raise ValueError(f"the quantity {name!r} is quietarm's own; give yours another name")
     if not name.isidentifier() or name != name.lower():
         raise ValueError(
-            f"the name of a quantity is {quoted(name)}; give letters, digits and _, as tip_speed"
+            f"the name of a quantity is {quoted(name)}; give letters, digits and _, such as "
+            "tip_speed"
         )
     _check_values(quantity)
     _quantities[name] = quantity
@@ -405,7 +406,7 @@ class TorqueSpeedLine:
             example = TorqueSpeedLine(((1.5, 0.0), (0.8, 20.0)), self.joint)
             raise ValueError(
                 f"torque-speed line is {self}; give two points or more by rising speed, between "
-                f"which the {words} falls ever steeper, as {example}"
+                f"which the {words} falls ever steeper, such as {example}"
             )
 
     @property
@@ -557,7 +558,7 @@ class Limit:
 
     @property
     def bounds(self) -> str:
-        """The bounds in words, as 0.3 N m or -30 to 40 rad/s^2."""
+        """The bounds in words, such as 0.3 N m or -30 to 40 rad/s^2."""
         if isinstance(self.quantity.values, TorqueSpeedLine | Shares):
             return str(self.quantity.values)
         return f"{_ends(self.lower, self.upper)} {self.quantity.unit}"

@@ -45,12 +45,12 @@ class MotionAnswer(Answer):
 
     @property
     def energy(self) -> float:
-        """F2, the driving energy [J], by the independent integrator."""
+        """Driving energy [J], by the independent integrator."""
         return self.candidate.energy
 
     @property
     def residual(self) -> float:
-        """F1, the largest absolute tip displacement after arrival [m], by the same."""
+        """Residual: the largest absolute tip displacement after arrival [m], by the same."""
         return self.candidate.residual
 
     def with_candidate(self, candidate: JudgedMotion) -> Self:
@@ -94,7 +94,7 @@ class MotionAnswer(Answer):
 
 
 def _stated_in(content: Mapping[str, Any]) -> dict[str, float]:
-    """The figures among the content of a file; ValueError where F1 or F2 is not among them."""
+    """The figures among the content of a file; ValueError without residual and energy."""
     stated = content.get(STATED, {})
     if not isinstance(stated, dict):
         raise ValueError(f"its {STATED} is {quoted(stated)}; give figures by name")

@@ -50,7 +50,9 @@ def checked_objectives(names: Sequence[str]) -> tuple[str, ...]:
     A name may be spelt with hyphens, as on the command line. ValueError where one is not known,
     stands twice, or residual or energy is not among them.
     """
-    spelt = [_spelt(name) for name in several("objectives", names, "names, as ['residual', ...]")]
+    spelt = [
+        _spelt(name) for name in several("objectives", names, "names, such as ['residual', ...]")
+    ]
     for name in spelt:
         if name not in known_objectives():
             offered = [known.replace("_", "-") for known in known_objectives()]

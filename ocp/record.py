@@ -128,7 +128,7 @@ class Verification:
     steps : int
         Fixed steps.
     fixed_step_energy, fixed_step_residual, energy_difference, residual_difference : float
-        F2 [J] and F1 [m] by the fixed steps, and those less the independent integrator's.
+        Energy [J] and residual [m] by the fixed steps, and those less the independent integrator's.
     rest : float
         The difference of residuals [m] within which they always agree.
     """

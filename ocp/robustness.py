@@ -182,9 +182,9 @@ class Sensitivity:
     parameter : str
         Its name; ``"frequency"`` and ``"damping"`` are those of all modes.
     energy : float
-        Change of F2 [J].
+        Change of energy [J].
     residual : float
-        F1 of the change of the state on arrival [m].
+        Residual of the change of the state on arrival [m].
     """
 
     parameter: str

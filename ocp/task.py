@@ -66,7 +66,7 @@ class ModalState:
         When a number is not finite, or the rates do not match the amplitudes.
     """
 
-    example: ClassVar[str] = "a state, as ModalState(W=[0.01], dW=[0.0])"
+    example: ClassVar[str] = "a state, such as ModalState(W=[0.01], dW=[0.0])"
 
     W: tuple[float, ...]
     dW: tuple[float, ...]
@@ -151,7 +151,7 @@ class PointToPoint:
         States at the start (of every scenario) and wanted on arrival; at rest by default. The
         residual is measured from the free vibration that begins with `final`.
     energy : Energy, optional
-        What counts as F2; the paper's absolute power by default.
+        What counts as energy; the paper's absolute power by default.
     uncertainty : Uncertainty, optional
         Ranges of the plant's parameter errors; none by default.
     bounds : mapping of str to bounds, optional
@@ -170,7 +170,7 @@ class PointToPoint:
     """
 
     example: ClassVar[str] = (
-        "a task, as PointToPoint(SingleLinkManipulator(), target=deg(30), duration=0.8)"
+        "a task, such as PointToPoint(SingleLinkManipulator(), target=deg(30), duration=0.8)"
     )
 
     plant: Plant
@@ -590,7 +590,9 @@ def _merged(
 ) -> dict[str, Any]:
     """Bounds by quantity, and those that are given by the keywords of limits; None takes away."""
     if bounds is not None and not isinstance(bounds, Mapping):
-        raise TypeError(f"bounds are {quoted(bounds)}; give them by name, as {{'torque': 0.2}}")
+        raise TypeError(
+            f"bounds are {quoted(bounds)}; give them by name, such as {{'torque': 0.2}}"
+        )
     merged: dict[str, Any] = dict(bounds or {})
     for keyword, value in given.items():
         name = keyword.removesuffix(_LIMIT)

@@ -179,8 +179,8 @@ def _refuse_beyond(name: str, error: float) -> None:
         becomes = "negative" if error < -1 else "0"
         least = "100 % or less" if name == DAMPING else "less than 100 %"
         raise ValueError(
-            f"an error of {100 * error:g} % makes the {name} {becomes}; give {least}, as 0.1 for "
-            "10 %"
+            f"an error of {100 * error:g} % makes the {name} {becomes}; give {least}, such as 0.1 "
+            "for 10 %"
         )
 
 
@@ -188,7 +188,7 @@ def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
     """Ranges as numbers; ValueError where there are none, or one turns a sign."""
     _by_name(ranges)
     if not ranges:
-        raise ValueError(f"no error is named; give some, as {{{FREQUENCY!r}: 0.1}} for 10 %")
+        raise ValueError(f"no error is named; give some, such as {{{FREQUENCY!r}: 0.1}} for 10 %")
     sizes = {name: positive(f"range of {name}", size) for name, size in ranges.items()}
     for name, size in sizes.items():
         _refuse_beyond(name, -size)
@@ -198,7 +198,9 @@ def _sizes(ranges: Mapping[str, float]) -> dict[str, float]:
 def _by_name(errors: object) -> None:
     """Refuse errors that are no mapping."""
     if not isinstance(errors, Mapping):
-        raise ValueError(f"errors are {errors!r}; give them by name, as {{{FREQUENCY!r}: 0.1}}")
+        raise ValueError(
+            f"errors are {errors!r}; give them by name, such as {{{FREQUENCY!r}: 0.1}}"
+        )
 
 
 def check_ranges(plant: Plant, ranges: Mapping[str, float]) -> dict[str, float]:
@@ -261,7 +263,7 @@ class Uncertainty:
     Parameters
     ----------
     ranges : mapping of str to float
-        Largest relative errors by name, as 0.1 for 10 %: of ``"frequency"`` and ``"damping"`` of
+        Largest relative errors by name, 0.1 for 10 %: of ``"frequency"`` and ``"damping"`` of
         all modes, and of any parameter of the plant.
     samples : sequence of sequence of float, optional
         Errors of the scenarios beside the nominal plant, in that order; by default all corners, of
@@ -273,7 +275,7 @@ class Uncertainty:
         When there are too many ranges, or a number is out of range.
     """
 
-    example: ClassVar[str] = "ranges, as Uncertainty({'frequency': 0.1}) for 10 %"
+    example: ClassVar[str] = "ranges, such as Uncertainty({'frequency': 0.1}) for 10 %"
 
     ranges: Mapping[str, float]
     samples: tuple[Scenario, ...] = ()

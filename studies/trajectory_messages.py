@@ -104,7 +104,7 @@ class MessagePlanner:
     def __post_init__(self) -> None:
         not_negative("duration", self.duration, "s")
         if finite("slowest", self.slowest) < 1.0:
-            raise ValueError(f"slowest is {self.slowest:g}; give 1 or more, as 1.5")
+            raise ValueError(f"slowest is {self.slowest:g}; give 1 or more, such as 1.5")
         positive("path_tolerance", self.path_tolerance, "rad or m")
         positive("rate", self.rate, "Hz")
         not_negative("thin", self.thin, "rad or m")

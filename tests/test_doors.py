@@ -18,19 +18,19 @@ KINDS = (
     "Motions", "JudgedMotion",
 )  # fmt: skip
 WRONG = {
-    "PointToPoint": ("link", "'link'; give a task, as PointToPoint(SingleLinkManipulator(), "),
-    "JointProfile": ("spline", "'spline'; give an object, as CycloidSpline()"),
-    "Plant": ("single_link", "'single_link'; give an object, as SingleLinkManipulator()"),
-    "Energy": ("copper", "'copper'; give an object, as CopperLoss(motor_constant)"),
-    "Solver": ("ipopt", "solver is 'ipopt'; give an object, as Ipopt()"),
+    "PointToPoint": ("link", "'link'; give a task, such as PointToPoint(SingleLinkManipulator(), "),
+    "JointProfile": ("spline", "'spline'; give an object, such as CycloidSpline()"),
+    "Plant": ("single_link", "'single_link'; give an object, such as SingleLinkManipulator()"),
+    "Energy": ("copper", "'copper'; give an object, such as CopperLoss(motor_constant)"),
+    "Solver": ("ipopt", "solver is 'ipopt'; give an object, such as Ipopt()"),
     "Front": ("front.json", "'front.json'; give Front.load('front.json')"),
     "Plan": ("plan.json", "'plan.json'; give Plan.load('plan.json')"),
     "Floor": ("floor.json", "'floor.json'; give Floor.load('floor.json')"),
     "JudgedMotion": (
         "plan.json",
-        "'plan.json'; give a motion, as plan.candidate or JudgedMotion.of_p",
+        "'plan.json'; give a motion, such as plan.candidate or JudgedMotion.of_p",
     ),
-    "Motions": (["plan.json"], "'plan.json'; give a line, as Line(plan, 'plan')"),
+    "Motions": (["plan.json"], "'plan.json'; give a line, such as Line(plan, 'plan')"),
 }
 
 
@@ -125,14 +125,14 @@ def test_something_else_is_told_what_to_give(right, function, name, kind, many):
 @pytest.mark.parametrize(
     ("profile", "told"),
     [
-        (6, "profile is 6; give a profile, as CycloidPolynomial(6) or CycloidSpline(12)"),
-        (qa.CycloidSpline, "profile is CycloidSpline; give an object, as CycloidSpline()"),
+        (6, "profile is 6; give a profile, such as CycloidPolynomial(6) or CycloidSpline(12)"),
+        (qa.CycloidSpline, "profile is CycloidSpline; give an object, such as CycloidSpline()"),
         (
             qa.ocp.ShapedCycloid,
-            "give an object, as ShapedCycloid(shaper, frequencies, damping_ratios)",
+            "give an object, such as ShapedCycloid(shaper, frequencies, damping_ratios)",
         ),
-        ("cycloid-spline", "give an object, as CycloidSpline()"),
-        ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, as"),
+        ("cycloid-spline", "give an object, such as CycloidSpline()"),
+        ([0.1, 0.2], "profile is [0.1, 0.2]; give a profile, such as"),
     ],
 )
 def test_a_profile_is_an_object(right, profile, told):
@@ -144,12 +144,24 @@ def test_a_profile_is_an_object(right, profile, told):
 @pytest.mark.parametrize(
     ("field", "value", "told"),
     [
-        ("initial", (0.01, 0), "initial is (0.01, 0); give a state, as ModalState(W=[0.01], dW=[0"),
-        ("final", [0.01, 0], "final is [0.01, 0]; give a state, as ModalState(W=[0.01], dW=[0.0])"),
-        ("energy", None, "energy is None; give an energy, as AbsolutePower() or CopperLoss(0.12)"),
-        ("energy", qa.ocp.PositivePower, "give an object, as PositivePower()"),
-        ("uncertainty", {"frequency": 0.1}, "give ranges, as Uncertainty({'frequency': 0.1})"),
-        ("uncertainty", 0.1, "uncertainty is 0.1; give ranges, as Uncertainty("),
+        (
+            "initial",
+            (0.01, 0),
+            "initial is (0.01, 0); give a state, such as ModalState(W=[0.01], dW=[0",
+        ),
+        (
+            "final",
+            [0.01, 0],
+            "final is [0.01, 0]; give a state, such as ModalState(W=[0.01], dW=[0.0])",
+        ),
+        (
+            "energy",
+            None,
+            "energy is None; give an energy, such as AbsolutePower() or CopperLoss(0.12)",
+        ),
+        ("energy", qa.ocp.PositivePower, "give an object, such as PositivePower()"),
+        ("uncertainty", {"frequency": 0.1}, "give ranges, such as Uncertainty({'frequency': 0.1})"),
+        ("uncertainty", 0.1, "uncertainty is 0.1; give ranges, such as Uncertainty("),
     ],
 )
 def test_a_field_of_a_task_is_of_its_class(field, value, told):
@@ -165,7 +177,8 @@ def test_a_field_of_a_task_is_of_its_class(field, value, told):
             lambda: qa.ocp.ModalState(0.01, 0),
             r"W is 0.01; give a list of numbers, one for each mode",
         ),
-        (lambda: qa.Uncertainty(0.1), r"errors are 0.1; give them by name, as {'frequency': 0.1}"),
+        (lambda: qa.Uncertainty(0.1), r"errors are 0.1; give them by name, such as "
+                                      r"{'frequency': 0.1}"),
         (lambda: qa.Uncertainty("frequency"), "errors are 'frequency'; give them by name"),
         (
             lambda: qa.PointToPoint(qa.SingleLinkManipulator(), 0.5, 0.8, torque_speed=1.5),
@@ -187,7 +200,7 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
     [
         (lambda task: qa.search(task, "nsga2", bound=0.2), "a method is given as algorithm=..."),
         (lambda task: qa.motion_figure("plan.json"), "give Plan.load('plan.json')"),
-        (lambda task: qa.motion_figure(6), "give a plan, as Plan.load('plan.json')"),
+        (lambda task: qa.motion_figure(6), "give a plan, such as Plan.load('plan.json')"),
         (lambda task: qa.pictures.draw_quantity([], "sped"), "did you mean 'speed'?"),
         (
             lambda task: qa.plan_move(task, guess="a"),
@@ -195,9 +208,12 @@ def test_numbers_stand_in_lists_and_by_names(make, told):
         ),
         (lambda task: qa.epsilon_front(task, at=0.1), "at is 0.1; give a list of residuals"),
         (lambda task: qa.weighted_front(task, weights=0.3), "give pairs of residual and energy"),
-        (lambda task: qa.ocp.perturb_plant(task.plant, 0.1), "by name, as {'frequency': 0.1}"),
+        (lambda task: qa.ocp.perturb_plant(task.plant, 0.1), "by name, such as {'frequency': 0.1}"),
         (lambda task: qa.sweep(task, axes={"target": 0.1}, path="x.zarr"), "give a list of values"),
-        (lambda task: qa.compare.compare_plans([task]), "give them by name, as {'mine': plan}"),
+        (
+            lambda task: qa.compare.compare_plans([task]),
+            "give them by name, such as {'mine': plan}",
+        ),
         (lambda task: qa.compare.compare_plans({}, "zv", task=task), "give a list of names"),
         (lambda task: qa.ocp.ShapedCycloid("zv", 10.0, [0.1]), "frequencies is 10.0; give a list"),
     ],
@@ -213,7 +229,7 @@ def test_one_move_is_no_list_of_moves(right):
 
 
 def test_an_energy_adds_to_energies_alone():
-    with pytest.raises(TypeError, match="part of a mix is 3; give an energy, as"):
+    with pytest.raises(TypeError, match="part of a mix is 3; give an energy, such as"):
         qa.ocp.Mix(((1.0, qa.AbsolutePower()), (1.0, 3)))
 
 
@@ -268,10 +284,13 @@ def test_so_is_no_entry_of_a_task(name, value):
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: qa.deg("30"), "degrees are '30'; give a number, as deg(30)"),
-        (lambda: qa.JointSpline(25), "knots is 25; give a list of fractions, as [0.3, 0.7]"),
+        (lambda: qa.deg("30"), "degrees are '30'; give a number, such as deg(30)"),
+        (lambda: qa.JointSpline(25), "knots is 25; give a list of fractions, such as [0.3, 0.7]"),
         (lambda: qa.CycloidSpline(True), "terms is True; give a whole number"),
-        (lambda: qa.pictures.Line(3, "x"), "plan is 3; give a plan, as Plan.load('plan.json')"),
+        (
+            lambda: qa.pictures.Line(3, "x"),
+            "plan is 3; give a plan, such as Plan.load('plan.json')",
+        ),
         (lambda: qa.Uncertainty({"frequency": "0.1"}), "is '0.1'; give a number"),
         (lambda: qa.CopperLoss("0.1"), "motor constant is '0.1'; give a number"),
         (lambda: qa.ocp.ModalState(["0.1"], [0]), "is '0.1'; give a number"),
@@ -286,17 +305,17 @@ def test_what_is_made_of_something_else_says_what_to_give(make, told):
 @pytest.mark.parametrize("kind", [qa.Plan, qa.Front, qa.ocp.Floor])
 @pytest.mark.parametrize("path", [3, None, ["plan.json"]])
 def test_a_file_has_a_name(right, kind, path):
-    with pytest.raises(TypeError, match=r"; give the name of a file, as 'plan\.json'"):
+    with pytest.raises(TypeError, match=r"; give the name of a file, such as 'plan\.json'"):
         kind.load(path)
     plan = qa.evaluate_coefficients(right["task"], [0.1])
     for save in (plan.save, plan.save_csv):
-        with pytest.raises(TypeError, match=r"; give the name of a file, as 'plan\.json'"):
+        with pytest.raises(TypeError, match=r"; give the name of a file, such as 'plan\.json'"):
             save(path)
 
 
 def test_a_plan_in_a_list_is_named_as_short_as_a_line(right):
     plan = qa.evaluate_coefficients(right["task"], [0.1])
-    told = "motion 1 is an object of Plan; give a line, as Line(plan, 'plan')"
+    told = "motion 1 is an object of Plan; give a line, such as Line(plan, 'plan')"
     with pytest.raises(TypeError, match=re.escape(told)):
         qa.motion_figure([plan])
 

@@ -61,7 +61,7 @@ def _rows(table):
 def test_the_table_is_that_of_a_reproduction():
     columns = {
         "plain cycloid": "cycloid", "ZV shaper": "zv",
-        "gradient, at rest": "gradient, in the box", "at rest, no box": "gradient",
+        "gradient, at rest": "gradient, within the bounds", "at rest, no bounds": "gradient",
     }  # fmt: skip
     measured = {}  # by move and system
     parts = PAGES["systems"].split("\n## ")[1:]

@@ -227,10 +227,10 @@ def _check(recordings: Sequence[Recording], plant: Plant) -> list[str]:
 def _checked_parts(parts: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     """Begins and ends of parts as numbers, each begin before its end."""
     checked = list[tuple[float, float]]()
-    for part in several("parts", parts, "pairs of begin and end, as [(3.2, 7.3)]"):
-        ends = several("a part", part, "its begin and end, as (3.2, 7.3)")
+    for part in several("parts", parts, "pairs of begin and end, such as [(3.2, 7.3)]"):
+        ends = several("a part", part, "its begin and end, such as (3.2, 7.3)")
         if len(ends) != 2:
-            raise ValueError(f"a part is {part!r}; give its begin and end, as (3.2, 7.3)")
+            raise ValueError(f"a part is {part!r}; give its begin and end, such as (3.2, 7.3)")
         begin, end = (finite("an end of a part", value, "s") for value in ends)
         if begin >= end:
             raise ValueError(f"a part is {part!r}; give its begin before its end")
@@ -277,10 +277,10 @@ def _is_read(name: str, parts: Sequence[Part]) -> bool:
 
 def _sought(plant: Plant, free: Sequence[str] | None, kinds: Sequence[str]) -> list[str]:
     if free is not None:
-        free = several("free", free, "names of parameters, as ['omega']")
+        free = several("free", free, "names of parameters, such as ['omega']")
         for name in free:
             if not isinstance(name, str):
-                raise TypeError(f"a name in free is {name!r}; give a parameter's, as 'omega'")
+                raise TypeError(f"a name in free is {name!r}; give a parameter's, such as 'omega'")
         if not free:
             raise ValueError("free names no parameter; name one, or leave it out")
         refuse_unknown(plant, free, also=())
@@ -357,7 +357,7 @@ def _drifts(plant: Plant, combined: Combined, parts: Sequence[Part]) -> list[str
         f"{name} drifts over the {what}, from {_with_unit(plant, name, trend.first)} to "
         f"{_with_unit(plant, name, trend.last)}: the intervals hold the drift, that of the next "
         "swing one step more, and no later ones; find what drifts, as what warms up or comes "
-        "loose, and record again, or state errors of your own, as --error frequency=5%"
+        "loose, and record again, or state errors of your own, such as --error frequency=5%"
         for name, trend in combined.trends.items()
         if name not in combined.wide
     ]

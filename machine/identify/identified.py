@@ -195,7 +195,7 @@ class Identified(Answer):
             When a parameter is not identifiable, the plant does not move as what was recorded, or
             one part alone does not tell how much the machine varies.
         """
-        remedy = "state errors of your own, as --error frequency=5%"
+        remedy = "state errors of your own, such as --error frequency=5%"
         doubtful = [part for part in self.parts if part.warning]
         if 2 * len(doubtful) >= len(self.parts):
             raise ValueError(f"{doubtful[0].recording}: {doubtful[0].warning}; or {remedy}")
@@ -251,7 +251,7 @@ class Identified(Answer):
                 value = getattr(self.plant, name)
                 raise ValueError(
                     f"the measured intervals are of the machine with {name} {value:.6g}; identify "
-                    f"it with the other {name}, or state errors of your own, as frequency=5%"
+                    f"it with the other {name}, or state errors of your own, such as frequency=5%"
                 )
 
 

@@ -59,7 +59,7 @@ class Recording:
         anew or goes back, or the angle cannot be one in radians.
     """
 
-    example = "a recording, as Recording(time, tip=tip)"
+    example = "a recording, such as Recording(time, tip=tip)"
 
     time: Array
     angle: Array | None = None
@@ -221,8 +221,8 @@ def _lost_in_words(whole: NDArray[np.bool_]) -> dict[str, str]:
 def checked_recordings(recordings: Any) -> list[Recording]:
     """Recordings as a list, one or more."""
     if isinstance(recordings, Recording):
-        raise TypeError(f"{recordings.name} is one recording; give a list, as [recording]")
-    checked = several("recordings", recordings, "recordings, as [Recording(time, tip=tip)]")
+        raise TypeError(f"{recordings.name} is one recording; give a list, such as [recording]")
+    checked = several("recordings", recordings, "recordings, such as [Recording(time, tip=tip)]")
     if not checked:
         raise ValueError("no recording is given; give one")
     for recording in checked:

@@ -46,7 +46,7 @@ class RobotRecording:
         When neither torques nor accelerations are given, rows do not fit, or the clock goes back.
     """
 
-    example = "a recording of a robot, as RobotRecording(time, torques=torques)"
+    example = "a recording of a robot, such as RobotRecording(time, torques=torques)"
 
     time: Array
     torques: Array | None = None

@@ -83,7 +83,7 @@ class ArchiveStrategy:
         self._room = np.sort(distance, axis=1)[:, 1:3].sum(axis=1)
 
     def child(self, differences: float, random: np.random.Generator) -> Array:
-        """A child in the box's units, which may lie beyond the box."""
+        """A child in units of the bounds, which may lie beyond them."""
         spread = 0.2  # standard deviation of the logarithm to base 10 of the lengths of steps
         count = len(self.X)
         parent, rival = random.integers(count, size=2)

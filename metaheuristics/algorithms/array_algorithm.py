@@ -35,7 +35,7 @@ class ArrayAlgorithm(Algorithm):
         self.population = population
 
     def propose(self) -> Array:
-        """Candidates of the next generation, shape (candidates, variables), within the box."""
+        """Candidates of the next generation, shape (candidates, variables), within the bounds."""
         raise NotImplementedError
 
     def learn(self, X: Array, F: Array, violation: Array) -> None:

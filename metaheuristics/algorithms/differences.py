@@ -1,4 +1,4 @@
-"""SLSQP with differences: what is left of the gradient where an energy is a black box.
+"""Finite-difference SLSQP: what is left of the gradient where an energy is a black box.
 
 The energy is minimised within one residual limit after another, by derivatives that are forward
 differences; every candidate that they take counts. The first has no limit, from a random start.

@@ -73,7 +73,7 @@ class MemeticMOEAD(ScaledMOEAD):
         ):
             raise ValueError(
                 "memetic takes derivatives of a move's residual and energy, and this problem has "
-                "none, or more objectives; choose a method without derivatives, as moead-de"
+                "none, or more objectives; choose a method without derivatives, such as moead-de"
             )
         super()._setup(problem, **options)
         self._function = function

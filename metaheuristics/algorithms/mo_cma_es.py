@@ -27,7 +27,7 @@ Rows = NDArray[np.int64]
 
 @dataclass
 class Strategies:
-    """Strategy parameters of individuals, a row for each, in a box that is scaled to 0 to 1."""
+    """Strategy parameters of individuals, a row for each, in bounds scaled to 0 to 1."""
 
     X: Array
     F: Array

@@ -13,7 +13,7 @@ from pymoo.util.display.multi import MultiObjectiveOutput
 
 
 class RandomSearch(Algorithm):
-    """Every generation is drawn anew, uniformly over the box; what none dominates is kept."""
+    """Every generation is drawn anew, uniformly over the bounds; what none dominates is kept."""
 
     pop: Any  # for the type checker: pymoo declares these as optional
     opt: Any
@@ -40,7 +40,7 @@ class RandomSearch(Algorithm):
 
 
 class LatinHypercubes(RandomSearch):
-    """Every generation is a latin hypercube over the box, the most even of some."""
+    """Every generation is a latin hypercube over the bounds, the most even of some."""
 
     def __init__(self, population: int = 100) -> None:
         super().__init__(population, LHS())

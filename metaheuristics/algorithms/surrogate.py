@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 
 
 class GaussianProcess:
-    """A Gaussian process in the unit box, with a Matern kernel of smoothness 5/2 and noise.
+    """A Gaussian process in the unit cube, with a Matern kernel of smoothness 5/2 and noise.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class GaussianProcess:
         self._weights = cho_solve(self._factor, values)
 
     def predict(self, rows: Array) -> tuple[Array, Array]:
-        """Mean and standard deviation at rows of the unit box, without the noise."""
+        """Mean and standard deviation at rows of the unit cube, without the noise."""
         across = self._kernel(rows)
         explained = solve_triangular(self._factor[0], across.T, lower=True)
         variance = np.exp(self.logarithms[0]) - (explained**2).sum(axis=0)
@@ -116,7 +116,7 @@ class Surrogate:
     used: int = 0
 
     def predict(self, U: Array, values: Array, rows: Array) -> tuple[Array, Array]:
-        """Mean and standard deviation of each column of values at rows of the unit box."""
+        """Mean and standard deviation of each column of values at rows of the unit cube."""
         pairs = [self._of(column, U, values[:, column], rows) for column in range(values.shape[1])]
         self.used += 1
         means, deviations = zip(*pairs)
@@ -179,7 +179,7 @@ def _next(
     together: int,
     random: np.random.Generator,
 ) -> Array:
-    """The next candidates, in the unit box."""
+    """The next candidates, in the unit cube."""
     usable = table[:, 0] < UNUSABLE
     if usable.sum() < 3:
         return random.random((together, U.shape[1]))
@@ -233,7 +233,7 @@ def _nearest_to(F: Array, violation: Array, best: Rows, most: int) -> Rows:
 
 
 def _pool(U: Array, best: Array, count: int, random: np.random.Generator) -> Array:
-    """Random rows of the unit box: half near the archive, others between its members and all."""
+    """Random rows of the unit cube: half near the archive, others between its members and all."""
     size = U.shape[1]
     step = 10 ** random.uniform(-2.5, -0.5, (count // 2, 1))
     near = best[random.integers(len(best), size=count // 2)]

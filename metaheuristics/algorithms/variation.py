@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def reflected(X: Array, lower: Array, upper: Array) -> Array:
-    """Candidates whose coefficients beyond the box are mirrored at its side, and then clipped."""
+    """Candidates whose coefficients beyond a bound are mirrored at it, and then clipped."""
     X = np.where(lower > X, 2 * lower - X, X)
     X = np.where(upper < X, 2 * upper - X, X)
     return np.clip(X, lower, upper)

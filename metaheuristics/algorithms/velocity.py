@@ -56,13 +56,13 @@ PAPER_GROUP = VelocityRule(
 
 
 def clip(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """Put each coordinate that leaves the box on its bound, with velocity zero."""
+    """Put each coordinate that leaves the bounds on its bound, with velocity zero."""
     inside = np.clip(x, lower, upper)
     return inside, np.where(inside == x, v, 0.0)
 
 
 def reflect(x: Array, v: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
-    """Mirror each coordinate that leaves the box at its bound, with its velocity reversed."""
+    """Mirror each coordinate that leaves the bounds at its bound, with its velocity reversed."""
     mirrored = np.where(
         x < lower,
         2 * lower - x,

@@ -16,7 +16,7 @@ from quietarm.ocp.simulation.mesh import default_steps
 CANDIDATE_STEPS = 24
 """Least steps of every search."""
 ACCURACY = 5e-4
-"""Residuals and energies of random candidates in the boxes of all named problems are within this
+"""Residuals and energies of random candidates of all named problems are within this
 share of those of much finer steps; docs/measures.md has what was measured."""
 UNUSABLE = 1e30
 """A figure from here up counts as not finite. This value replaces it, because algorithms can sort
@@ -41,7 +41,7 @@ def search_evaluator(
 
 
 def objectives_of(evaluation: Evaluation) -> NDArray[np.float64]:
-    """F1 [m] as the largest of the scenarios and F2 [J] of the nominal plant, (candidates, 2)."""
+    """Largest residual of the scenarios [m], nominal energy [J], (candidates, 2)."""
     residual = evaluation.sampled_residual.max(axis=1)
     return np.column_stack([residual, evaluation.energy[:, 0]])
 

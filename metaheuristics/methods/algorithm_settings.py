@@ -44,7 +44,7 @@ def _plain(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _named(operator: Any) -> str:
-    """An operator's class and numbers, as SBX(eta=15, prob=0.9)."""
+    """An operator's class and numbers, such as SBX(eta=15, prob=0.9)."""
     if not hasattr(operator, "__dict__"):
         return str(operator)
     name = type(operator).__name__

@@ -226,7 +226,7 @@ class Preset:
     def refuse_unfit(self, objectives: int, noise: float = 0.0, of_model: bool = True) -> None:
         """Refuse a problem that it is not for; ValueError says what to give."""
         if reason := self.unfit_for(objectives, noise, of_model):
-            raise ValueError(f"{reason}; give another method, as moead-de")
+            raise ValueError(f"{reason}; give another method, such as moead-de")
 
     def refuse_less_than_one(self, evaluations: int, population: int, objectives: int = 2) -> None:
         """Refuse whole numbers of evaluations that are less than a generation."""

@@ -90,7 +90,7 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
         _count(2),
     ),
     "gradient_iterations": ("gradient_iterations", "iterations of each at a time", _count(1)),
-    "step": ("step", "step of a difference, as a share of the box", _positive_share),
+    "step": ("step", "step of a difference, as a share of the bounds", _positive_share),
     "continuation": (
         "continuation",
         "start at the motion of the next larger limit, else at random",
@@ -98,7 +98,7 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     ),
     "first_step": (
         "first_step",
-        "standard deviation at first, as a share of the box",
+        "standard deviation at first, as a share of the bounds",
         _positive_share,
     ),
     "first": ("first", "candidates that are drawn at random before the others", _count(2)),
@@ -111,15 +111,15 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
         "share of the generations between changes of the directions",
         _positive_share,
     ),
-    "boundary": ("boundary", "what happens beyond the box", _one_of("clip", "reflect")),
+    "boundary": ("boundary", "what happens beyond the bounds", _one_of("clip", "reflect")),
     "velocity_limit": (
         "velocity_limit",
-        "largest velocity of a coefficient, as a share of its box",
+        "largest velocity of a coefficient, as a share of its bounds",
         positive,
     ),
     "max_velocity_rate": (
         "velocity_limit",
-        "largest velocity of a coefficient, as a share of its box",
+        "largest velocity of a coefficient, as a share of its bounds",
         positive,
     ),
     "archive_size": (
@@ -148,7 +148,7 @@ _ARGUMENTS: Mapping[str, tuple[str, str, Check]] = {
     "gamma": ("jitter", "how much the factor differs between coefficients", not_negative),
     "de_repair": (
         "repair",
-        "what happens beyond the box",
+        "what happens beyond the bounds",
         _one_of("bounce-back", "midway", "rand-init", "to-bounds"),
     ),
     "delta": (

@@ -31,7 +31,7 @@ class AskTell(Protocol):
         ...
 
     def ask(self) -> ArrayLike:
-        """Candidates within the box, shape (candidates, variables); none to end."""
+        """Candidates within the bounds, shape (candidates, variables); none to end."""
         ...
 
     def tell(self, candidates: ArrayLike, objectives: NDArray, violations: NDArray) -> None:
@@ -57,10 +57,11 @@ def method_name(method: Method) -> str:
 def check_method(method: object) -> None:
     """Refuse what is no method at all."""
     if inspect.isclass(method):
-        raise ValueError(f"give an object, as {method.__name__}(), not its class")
+        raise ValueError(f"give an object, such as {method.__name__}(), not its class")
     if not (is_of_pymoo(method) or isinstance(method, AskTell) or callable(method)):
         raise ValueError(
-            f"method is {reprlib.repr(method)}; give a name, as 'nsga2', a function of (function, "
+            f"method is {reprlib.repr(method)}; give a name, such as 'nsga2', a function of "
+            "(function, "
             "seed, budget), an object with setup, ask and tell, or an algorithm of pymoo"
         )
 

@@ -82,7 +82,7 @@ class MoveFunction(ProblemFunction):
         profile = choose_profile(task) if profile is None else profile
         bound = profile.default_bound if bound is None else bound
         if bound is None:
-            raise ValueError("give a bound on the coefficients: the box that is searched")
+            raise ValueError("give a bound on the coefficients, within which to search")
         bound = coefficient_bound(bound)
         profile.refuse_no_choice()
         self.task = task

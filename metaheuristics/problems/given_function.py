@@ -38,7 +38,7 @@ class _UnfitError(ValueError):
 
 
 class GivenFunction(ProblemFunction):
-    """A user's own function of candidates, with its box and the names of what it returns.
+    """A user's own function of candidates, with its bounds and the names of what it returns.
 
     The function runs in this process, with all that its author wrote into it.
 

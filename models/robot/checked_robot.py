@@ -289,7 +289,7 @@ def _number_of_modes(modes: object) -> int:
 def _vector(name: str, value: Any) -> tuple[float, float, float]:
     entries = [finite(name, entry, "m/s^2") for entry in value]
     if len(entries) != 3:
-        raise ValueError(f"{name} has {len(entries)} numbers; give three, as 0, 0, -9.81")
+        raise ValueError(f"{name} has {len(entries)} numbers; give three, such as 0, 0, -9.81")
     return (entries[0], entries[1], entries[2])
 
 

@@ -108,7 +108,7 @@ class Robot(CheckedRobot):
         there is. Or those of the slowest twelve that leave a thousandth at least of what the most
         excited one leaves on the path.
     limits : mapping, optional
-        Limits by quantity and joint, as {"speed": {"elbow_joint": 3.0}}.
+        Limits by quantity and joint, such as {"speed": {"elbow_joint": 3.0}}.
     measured : Measured, optional
         A measured frequency, to which all springs are scaled.
     positions : mapping of str to (float, float)
@@ -122,7 +122,7 @@ class Robot(CheckedRobot):
         When the URDF cannot be followed, a name is not in it, or a value is out of range.
     """
 
-    example: ClassVar[str] = "a robot, as Robot.load('robot.yaml')"
+    example: ClassVar[str] = "a robot, such as Robot.load('robot.yaml')"
 
     @classmethod
     @interruptible
@@ -249,7 +249,7 @@ class Robot(CheckedRobot):
                 raise ValueError(
                     f"joint {quoted(name)} is at {column[at]:.5g} at s = {places[at]:.3g} of the "
                     f"path; its range is {least:g} to {most:g}{self._with_followers(name)}, give a "
-                    "path within it"
+                    f"path within it{self._degrees_words(name, column[at])}"
                 )
         words = tuple(words for words in self._long_turns(path) if words not in path.remarks)
         return replace(path, remarks=(*path.remarks, *words)) if words else path
@@ -267,6 +267,7 @@ class Robot(CheckedRobot):
                     f"joint {quoted(name)}, which has no ends, turns by {steps[at]:.4g} rad "
                     f"between waypoints {at + 1} and {at + 2}; for the short way of {short:.4g} "
                     f"rad give {column[at] + short:.5g} in place of {column[at + 1]:.5g}"
+                    f"{self._degrees_words(name, steps[at])}"
                 )
 
     def check_positions(self, points: Array) -> None:
@@ -279,6 +280,7 @@ class Robot(CheckedRobot):
                     f"joint {quoted(name)} is at {column[at]:.5g} at point {at + 1} of "
                     f"{len(points)}; its range is {least:g} to {most:g}"
                     f"{self._with_followers(name)}, give positions within it"
+                    f"{self._degrees_words(name, column[at])}"
                 )
 
     @interruptible
@@ -288,6 +290,11 @@ class Robot(CheckedRobot):
         These are the lines between the path's waypoints; 0 of a path without.
         """
         return tip_beside_lines(self.kinematics(self.tip), *path.beside_lines)
+
+    def _degrees_words(self, joint: str, position: float) -> str:
+        """Ask whether degrees were meant where a joint turns by more than a turn."""
+        is_far = self.kind_of(joint) == ROTARY and abs(position) > math.tau
+        return "; positions are in rad, were degrees meant?" if is_far else ""
 
     def _with_followers(self, joint: str) -> str:
         """Words on the joints that follow one, whose ranges bind it as well."""

@@ -100,7 +100,7 @@ def _held(entry: Any, urdf: str) -> dict[str, float]:
     """Positions of joints that are not driven, of one that slides in metres."""
     if not isinstance(entry, dict):
         raise ValueError(
-            f"held is {quoted(entry)}; give positions by joint, as {{finger_joint: 20mm}}"
+            f"held is {quoted(entry)}; give positions by joint, such as {{finger_joint: 20mm}}"
         )
     joints = read_urdf(urdf).joints
     slides = {name for name, joint in joints.items() if joint.kind == PRISMATIC}
@@ -209,7 +209,7 @@ def _beam(entry: Any, what: str) -> Beam:
     given = _table(entry, what, readers)
     for name in ("at", "length"):
         if name not in given:
-            raise ValueError(f"the beam has no {name}; give it, as {_EXAMPLES[name]}")
+            raise ValueError(f"the beam has no {name}; give it, such as {_EXAMPLES[name]}")
     return Beam(**given)
 
 
@@ -236,9 +236,13 @@ def _measured(entry: Any, what: str) -> Measured:
     given = _table(entry, what, readers)
     frequency = entry.get("frequency")
     if isinstance(frequency, int | float):
-        raise ValueError(f"measured frequency is {frequency}; say its unit, as {frequency:g}Hz")
+        raise ValueError(
+            f"measured frequency is {frequency}; say its unit, such as {frequency:g}Hz"
+        )
     if given.keys() != readers.keys():
-        raise ValueError("measured needs a frequency, as 3.05Hz, and at, the joints' positions")
+        raise ValueError(
+            "measured needs a frequency, such as 3.05Hz, and at, the joints' positions"
+        )
     return Measured(**given)
 
 
@@ -277,7 +281,7 @@ def _sliding(document: Mapping[str, Any], folder: Path) -> set[str]:
 def _by_joint(entry: Any, what: str, read: ReadOfJoint, sliding: Collection[str]) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise ValueError(
-            f"{what} is {quoted(entry)}; give values by joint, as {{elbow_joint: 1.0}}"
+            f"{what} is {quoted(entry)}; give values by joint, such as {{elbow_joint: 1.0}}"
         )
     return {
         str(joint): read(

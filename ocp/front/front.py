@@ -97,7 +97,7 @@ class Front(Answer):
         coefficients or is not finite, or the points are out of order, or one is dominated.
     """
 
-    example: ClassVar[str] = "a front, as Front.load('front.json')"
+    example: ClassVar[str] = "a front, such as Front.load('front.json')"
     kind: ClassVar[str] = "front"
     version: ClassVar[int] = 5
     read_by_2_0 = (4,)
@@ -156,12 +156,12 @@ class Front(Answer):
 
     @property
     def residuals(self) -> NDArray[np.float64]:
-        """F1 of every point [m]."""
+        """Residual of every point [m]."""
         return np.array([point.residual for point in self.points])
 
     @property
     def energies(self) -> NDArray[np.float64]:
-        """F2 of every point [J]."""
+        """Energy of every point [J]."""
         return np.array([point.energy for point in self.points])
 
     @property
@@ -219,8 +219,8 @@ class Front(Answer):
         added = further_figures(FRONT, self.task)
         values = [self.figure_values(figure) for figure in added]
         head = (
-            f"residual F1 within {self.task.residual_window:.4g} s [{unit}]",
-            "energy F2 [J]",
+            f"residual within {self.task.residual_window:.4g} s [{unit}]",
+            "energy [J]",
             *(f"{objective.label} [{objective.unit}]" for objective in self._peaks),
             *(f"{figure.label_on(plant)} [{figure.unit_on(plant) or '-'}]" for figure in added),
             f"shadow price [J/{unit}]",

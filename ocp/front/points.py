@@ -25,7 +25,7 @@ at each, where they can."""
 
 @dataclass(frozen=True)
 class FrontPoint:
-    """One motion on a front: its coefficients, residual F1 [m] and energy F2 [J].
+    """One motion on a front: its coefficients, residual [m] and energy [J].
 
     `Front` checks its points. The `shadow_prices` are the decrease of the least energy per unit of
     a widened limit [J by its unit], as of a `Plan`: that of the residual is the slope of the
@@ -137,7 +137,7 @@ class Entries:
     coefficients : tuple of tuple of float
         The profile's coefficients of each.
     residuals, energies : tuple of float
-        F1 [m] and F2 [J] at the steps of the search, without noise.
+        Residual [m] and energy [J] at the steps of the search, without noise.
     peaks : mapping of str to tuple of float
         The peaks that are objectives, by quantity [its SI unit].
     believed : tuple of tuple of float
@@ -225,7 +225,7 @@ def beyond(
     upper: ArrayLike,
     rounding: float = 1e-9,
 ) -> NDArray[np.int64]:
-    """Row and column of every coefficient that is not within a box, or is no number.
+    """Row and column of every coefficient that is not within bounds, or is no number.
 
     It may pass the box by a share of its size: what decimals in a file may lose.
     """
@@ -240,7 +240,7 @@ def refuse_beyond_box(
     bound: float | None,
     remedy: str = "; correct it, or state a wider bound",
 ) -> None:
-    """Refuse coefficients beyond the box of a profile for the bound that is stated."""
+    """Refuse coefficients beyond the bounds of a profile for the bound that is stated."""
     if bound is None:
         return
     most = positive("its bound", bound)

@@ -1,4 +1,4 @@
-"""The box and the names that a front of a user's own function has in the place of a task."""
+"""The bounds and the names that a front of a user's own function has in the place of a task."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class NoTaskError(QuietarmError, ValueError, AttributeError):
 
 @dataclass(frozen=True)
 class SearchedFunction:
-    """A function of coefficients, as a file keeps it: its name, its box and what it returns.
+    """A function of coefficients, as a file keeps it: its name, its bounds and what it returns.
 
     It stands where a front of a move has its task and its profile. The function itself is not in
     it: no file holds what could be run.
@@ -127,13 +127,13 @@ _OF_TASKS = frozenset(vars(JointProfile)) | frozenset(PointToPoint.__dataclass_f
 
 
 def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """The sides of a box, as many numbers each; one of them may be a single number."""
+    """The lower and upper bounds, as many numbers each; one of them may be a single number."""
     sides = {"lower": lower, "upper": upper}
     rows = dict[str, NDArray[np.float64]]()
     for side, value in sides.items():
         if value is None:
             raise ValueError(
-                f"{side} is missing; give lower= and upper=, the box of the function's "
+                f"{side} is missing; give lower= and upper=, the bounds of the function's "
                 "coefficients, or set them as attributes of the function"
             )
         rows[side] = numbers(side, value, "a number for each coefficient")
@@ -166,7 +166,7 @@ def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float,
 
 def _checked_names(what: str, names: Any) -> tuple[str, ...]:
     """Names of objectives or constraints, each once."""
-    entries = several(what, names, "names, as ['residual', 'energy']")
+    entries = several(what, names, "names, such as ['residual', 'energy']")
     for name in entries:
         if not isinstance(name, str) or not name.strip() or len(name) > _LONGEST:
             raise ValueError(
@@ -179,12 +179,12 @@ def _checked_names(what: str, names: Any) -> tuple[str, ...]:
 
 def _checked_units(units: Any, objectives: Sequence[str]) -> tuple[str, ...]:
     """A unit of each objective; the usual ones of residual and energy where none are stated."""
-    stated = several("units", units, "a unit for each objective, as ['m', 'J']")
+    stated = several("units", units, "a unit for each objective, such as ['m', 'J']")
     if not stated:
         return tuple(_USUAL_UNITS.get(name, "") for name in objectives)
     for unit in stated:
         if not isinstance(unit, str) or len(unit) > _LONGEST:
-            raise ValueError(f"one of the units is {quoted(unit)}; give a word, as 'm', or ''")
+            raise ValueError(f"one of the units is {quoted(unit)}; give a word, such as 'm', or ''")
     if len(stated) != len(objectives):
         raise ValueError(
             f"{len(objectives)} objectives have {len(stated)} units; give one for each"

@@ -48,7 +48,7 @@ class TimedPoint:
     acts_after : float
         When the tool may act in the worst case [s].
     energy : float
-        F2 [J].
+        Energy [J].
     coefficients : tuple of float
         The profile's.
     """
@@ -77,7 +77,7 @@ class TimeFront(Answer):
         Durations in which no plan was found, and why.
     """
 
-    example: ClassVar[str] = "a front of time and energy, as TimeFront.load('time.json')"
+    example: ClassVar[str] = "a front of time and energy, such as TimeFront.load('time.json')"
     kind: ClassVar[str] = "time-front"
     version: ClassVar[int] = 1
 
@@ -94,7 +94,7 @@ class TimeFront(Answer):
 
     @property
     def energies(self) -> NDArray[np.float64]:
-        """F2 of every point [J]."""
+        """Energy of every point [J]."""
         return np.array([point.energy for point in self.points])
 
     @property

@@ -105,7 +105,8 @@ def _pairs(weights: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         both = [(of_residual, of_energy) for of_residual, of_energy in weights]
     except (TypeError, ValueError):
         raise ValueError(
-            f"weights are {quoted(weights)}; give pairs of residual and energy, as [(1, 0), (1, 3)]"
+            f"weights are {quoted(weights)}; give pairs of residual and energy, such as [(1, 0), "
+            "(1, 3)]"
         ) from None
     pairs = [
         (not_negative("weight", of_residual), not_negative("weight", of_energy))

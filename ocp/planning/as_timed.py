@@ -43,7 +43,7 @@ class TimedAnswer:
     motion : TimedMotion
         The trajectory of its driven joints.
     energy, residual : float
-        F2 [J] and the largest displacement of the tip after arrival [m].
+        Energy [J] and the largest displacement of the tip after arrival [m].
     peaks : mapping of str to ndarray
         By quantity, torque, speed, acceleration and jerk: the largest size of each joint.
     swings : sequence of (float, float)

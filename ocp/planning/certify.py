@@ -49,7 +49,8 @@ then the independent integrator's within 1e-6, in all but one of 56 plans tried 
 class Certified:
     """A solution with what another integrator says, and the problem, tightened, that it solves.
 
-    The figures are those of a motion that CVODES judges; by finer steps there are F1 and F2.
+    The figures are those of a motion that CVODES judges; residual and energy are there by finer
+    steps as well.
     `by_cvodes` is true if CVODES computed or confirmed them.
     """
 
@@ -65,7 +66,7 @@ class Certified:
 
     @property
     def energy(self) -> float:
-        """F2 [J] by the other integrator."""
+        """Energy [J] by the other integrator."""
         return self.figures.energy
 
     def keeps(self, limits: Sequence[Limit], still: float) -> bool:

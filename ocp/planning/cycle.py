@@ -52,7 +52,7 @@ class Shuttle:
         When the dwell is negative, or there are no cycles or too many.
     """
 
-    example: ClassVar[str] = "cycles, as Shuttle(dwell=0.3, repeat=12)"
+    example: ClassVar[str] = "cycles, such as Shuttle(dwell=0.3, repeat=12)"
 
     dwell: float = 0.0
     repeat: int = 1
@@ -86,7 +86,7 @@ class Cycle:
     def __post_init__(self) -> None:
         if not isinstance(self.errors, Mapping):
             raise TypeError(
-                f"errors are {quoted(self.errors)}; give them by name, as {{'frequency': 0.1}}"
+                f"errors are {quoted(self.errors)}; give them by name, such as {{'frequency': 0.1}}"
             )
         known = {name: finite(f"error of {name}", size) for name, size in self.errors.items()}
         object.__setattr__(self, "errors", known)

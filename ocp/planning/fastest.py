@@ -38,7 +38,7 @@ from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 _GROWTH = 1.5
 """By which a duration along a given profile grows where it fails."""
-_BEYOND = "every motion found exceeds a limit by 0.05 of it or more"
+_BEYOND = "every motion found exceeds a limit by 5 % or more"
 _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
 
 
@@ -87,8 +87,8 @@ def fastest_move(
         of the fastest motion changes: it can cruise, and comes within 1 % of the least time. Along
         another profile the task's duration is where the search begins.
     residual_limit : float, optional
-        Largest F1 [m]; 0, the default, requires rest on arrival. For an uncertain task the default
-        is `fastest_residual_limit`, whatever the duration.
+        Largest residual [m]; 0, the default, requires rest on arrival. For an uncertain task the
+        default is `fastest_residual_limit`, whatever the duration.
     bound, seed, steps, solver
         As for `plan_move`; each duration has one start, the fastest motion on the spline, or the
         last feasible one.
@@ -184,7 +184,7 @@ def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
     """Say why the longest duration that failed is too short."""
     if least.too_short <= rigid_duration(task):
         return _RIGID
-    return f"every motion found exceeds a limit by {max(least.excess, 1e-6):.1g} of it or more"
+    return f"every motion found exceeds a limit by {100 * max(least.excess, 1e-6):.1g} % or more"
 
 
 def _longest_first(failed: Mapping[float, str]) -> tuple[tuple[float, str], ...]:

@@ -42,7 +42,7 @@ class Moves:
     coefficients : ndarray, shape (moves, profile.size)
         Coefficients; NaN where there is no plan.
     energy, residual : ndarray, shape (moves,)
-        F2 [J] and F1 [m]; NaN where there is no plan.
+        Energy [J] and residual [m]; NaN where there is no plan.
     peaks : dict of str to ndarray, shape (moves,)
         Largest absolute values on the way by quantity [SI units]; NaN where there is no plan.
     status, reasons, iterations

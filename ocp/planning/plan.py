@@ -74,7 +74,7 @@ class Plan(MotionAnswer):
         The executed moves that it was learned from by `quietarm.learn`; None of any other plan.
     """
 
-    example: ClassVar[str] = "a plan, as Plan.load('plan.json')"
+    example: ClassVar[str] = "a plan, such as Plan.load('plan.json')"
     kind: ClassVar[str] = "plan"
     version: ClassVar[int] = 5
     read_by_2_0 = (4,)
@@ -264,8 +264,8 @@ class Plan(MotionAnswer):
         rows = {
             "plant": task.plant.name,
             "move": f"{task.ends} in {task.duration:g} s",
-            "energy F2": f"{motion.energy:.5g} J",
-            f"residual vibration F1 within {task.residual_window:.4g} s": residual,
+            "energy": f"{motion.energy:.5g} J",
+            f"residual vibration within {task.residual_window:.4g} s": residual,
             **self._robust_rows(),
             "limits": ", ".join(map(str, task.limits)) or "-",
             **peaks,

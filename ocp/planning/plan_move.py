@@ -52,8 +52,8 @@ def plan_move(
         six. The only motion of a profile without coefficients, such as `shaped_cycloid`, is
         evaluated, not optimised.
     residual_limit : float, optional
-        Largest F1 [m]; 0, the default, requires rest on arrival, or the task's `final` state. For
-        an uncertain task, where rest in all scenarios is infeasible, the default is 5 % of the
+        Largest residual [m]; 0, the default, requires rest on arrival, or the task's `final` state.
+        For an uncertain task, where rest in all scenarios is infeasible, the default is 5 % of the
         largest deflection during the plain cycloid of the same duration on the nominal plant, or
         the worst case of the nominal plant's plan if that is smaller. If neither is feasible, it is
         the least worst case. `Plan.residual_limit` is the limit that was used.

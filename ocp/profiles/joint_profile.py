@@ -35,7 +35,7 @@ class JointProfile(ABC):
         When a subclass overrides `motion` or `path`.
     """
 
-    example: ClassVar[str] = "a profile, as CycloidPolynomial(6) or CycloidSpline(12)"
+    example: ClassVar[str] = "a profile, such as CycloidPolynomial(6) or CycloidSpline(12)"
     """What to give where something else was given."""
     name: ClassVar[str]
     """The name by which files know the family."""
@@ -106,7 +106,7 @@ class JointProfile(ABC):
         return -largest, largest
 
     def start_box(self, bound: float | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the box of the gradient's random starts, like `box` but finite."""
+        """Return the bounds of the gradient's random starts, like `box` but finite."""
         return self.box(self.unbounded_spread if bound is None else bound)
 
     @property

@@ -56,7 +56,7 @@ class JointSpline(JointProfile):
     knots: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        values = several("knots", self.knots, "fractions, as [0.3, 0.7]")
+        values = several("knots", self.knots, "fractions, such as [0.3, 0.7]")
         knots = tuple(finite("knot", knot) for knot in values)
         if not 1 <= len(knots) <= self.most_knots:
             raise ValueError(f"got {len(knots)} knots; give 1 to {self.most_knots}")

@@ -38,7 +38,7 @@ time to build it, and grows with the square of the steps."""
 
 @dataclass(frozen=True)
 class RowValues:
-    """Simulated values of candidates: F2 [J], state on arrival, limited quantities at the nodes.
+    """Simulated values of candidates: energy [J], state on arrival, limited quantities.
 
     Shapes are (rows,), (rows, 2 * modes) and (rows, values); `places_of` a simulation tells which
     value is of which quantity.
@@ -219,7 +219,7 @@ class Evaluation:
     Attributes
     ----------
     energy : ndarray, shape (candidates, scenarios)
-        F2 [J].
+        Energy [J].
     arrival : ndarray, shape (candidates, scenarios, 2 * modes)
         W [m] and then W' [m/s] on arrival.
     limited : ndarray, shape (candidates, scenarios, values)
@@ -244,7 +244,7 @@ class Evaluation:
 
     @cached_property
     def residual(self) -> Array:
-        """F1 [m], shape (candidates, scenarios), between the samples of the window as well."""
+        """Residual [m], (candidates, scenarios), between the samples of the window as well."""
         missed = self.missed
         if self.errors is None:
             vibrations = self.evaluator.vibrations
@@ -268,7 +268,7 @@ class Evaluation:
 
     @cached_property
     def sampled_residual(self) -> Array:
-        """F1 [m] at samples of the window, as the optimisers see it: to 5e-5, and much faster."""
+        """Residual [m] at samples of the window, as optimisers see it: to 5e-5, much faster."""
         missed = self.missed
         peaks = [
             np.abs(missed[:, i] @ rows.T).max(axis=1)

@@ -113,7 +113,7 @@ class FreeVibration:
 
     @cached_property
     def rows(self) -> Array:
-        """F1 is the largest absolute product of a row and a state, to 5e-5; (rows, 2 * modes).
+        """Residual: the largest absolute product of a row and a state, to 5e-5; (rows, 2 * modes).
 
         To 1.3e-3 along the lines of a plant with `tip_lines`, which has a row for each of these at
         every time: `certify` makes up for what is missed of a peak.
@@ -134,7 +134,7 @@ class FreeVibration:
 
     @on_one_thread
     def peak(self, states: ArrayLike) -> Array:
-        """F1 [m]: the largest absolute displacement of a tip within the window.
+        """Residual [m]: the largest absolute displacement of a tip within the window.
 
         States on arrival have shape (2 * modes,) or (n, 2 * modes), many of one vibration or one of
         each; the peaks () or (n,), between the samples where a tip turns back there.

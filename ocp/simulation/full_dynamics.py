@@ -34,7 +34,7 @@ Places = float | Array
 
 
 class FullFigures(NamedTuple):
-    """F2 [J], F1 as a distance [m], and the peak torque of every joint [N m].
+    """Energy [J], residual as a distance [m], and the peak torque of every joint [N m].
 
     On arrival: angles of the springs and their rates, shape (2 * springs,).
     """
@@ -69,7 +69,7 @@ def follow_in_full(
     window : ndarray
         Times after arrival at which the tip is looked at [s], 0 the first.
     energy : Energy
-        F2.
+        Energy.
 
     Raises
     ------

@@ -20,7 +20,7 @@ from quietarm.ocp.task import PointToPoint
 MOST_STEPS = 20_000
 """Of any simulation by fixed steps: finer ones differ by rounding alone."""
 ROLLOUT_STEPS = 140
-"""Steps that keep the energy of random coefficients in the paper's boxes within 1e-5 relative."""
+"""Steps that keep the energy of random coefficients of the paper's bounds within 1e-5 relative."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""F2 of a motion: the energy, from its powers at the nodes of steps."""
+"""The energy of a motion, from its powers at the nodes of steps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from quietarm.ocp.simulation.mesh import Mesh
 def spent(
     energy: Energy, nodes: Sequence[Sample], h: Expression, unbroken: bool = True
 ) -> Expression:
-    """F2, the sum over the joints, from the Gauss nodes of every step; a row a candidate."""
+    """Energy, the sum over the joints, from the Gauss nodes of every step; a row a candidate."""
     by_joint = zip(*(sample.powers for sample in nodes))
     resolved = [_resolved(power, h, unbroken) for power in by_joint]
     smooth = integrated([smooth_power(energy, sample) for sample in nodes], h)

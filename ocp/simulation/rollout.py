@@ -75,7 +75,7 @@ class SymbolicRollout:
 
     @property
     def energy(self) -> Expression:
-        """F2 [J], one row a candidate."""
+        """Energy [J], one row a candidate."""
         return spent(self.definition, self.samples, self.h, self.unbroken)
 
     def values(self, quantity: Quantity) -> list[Expression]:

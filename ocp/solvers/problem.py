@@ -252,7 +252,7 @@ class Solution:
     coefficients : ndarray, shape (profile.size,)
         The profile's coefficients.
     energy : float
-        F2 [J].
+        Energy [J].
     peaks : mapping of str to float
         Residual [m] and each limited quantity [SI units] by name, as of `Limit.peak`, at the nodes.
     status : SolveStatus
@@ -283,7 +283,7 @@ class Solution:
 
     @property
     def residual(self) -> float:
-        """F1 [m] at the sampled times of the residual window."""
+        """Residual [m] at the sampled times of the residual window."""
         return self.peaks[RESIDUAL]
 
     @property

@@ -196,7 +196,7 @@ class Programs:
         self._constrain(first.bounds_residual)
 
     def _constrain(self, bounds_residual: bool) -> None:
-        """Everything that is bounded, the box last."""
+        """Everything that is bounded, the bounds last."""
         constraints = dict[str, _Constraint]()
         if bounds_residual:
             limit = np.array([entry.residual_limit for entry in self._problems])
@@ -259,7 +259,7 @@ class Programs:
         return x
 
     def coefficients(self, x: Array) -> Array:
-        """The coefficients of unknowns, within their box, which rounding may pass."""
+        """The coefficients of unknowns, within their bounds, which rounding may pass."""
         return np.clip(x[:, : self._size] @ self._axes.T, *self._box)
 
     def split(self, bounded: Array) -> dict[str, Array]:

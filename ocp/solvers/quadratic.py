@@ -71,7 +71,7 @@ class Steps(NamedTuple):
 
 
 def least_steps(model: Model, lower: Array, upper: Array, radius: Array, linear: int) -> Steps:
-    """Steps that minimise quadratic models within linearised constraints and in a box.
+    """Steps that minimise quadratic models within linearised constraints and bounds.
 
     The Hessians are convex, `radius` is half the sides of the boxes. Where the constraints cannot
     be met, the step makes their violation least; the last `linear` of what is bounded are kept all
@@ -143,7 +143,7 @@ def _solve(
 def _least_violation(
     table: Array, most: Array, least: Array, radius: float, m: int, hard: NDArray[np.bool_]
 ) -> Array:
-    """The step in a box that makes the largest violation of linearised constraints least.
+    """The step within bounds that makes the largest violation of linearised constraints least.
 
     The violation t is one more unknown; hard constraints, the last ones, are kept.
     """

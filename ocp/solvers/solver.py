@@ -112,7 +112,7 @@ class Solver:
         When an option is out of range.
     """
 
-    example: ClassVar[str] = "a solver, as Sqp() or Ipopt(tolerance=1e-7)"
+    example: ClassVar[str] = "a solver, such as Sqp() or Ipopt(tolerance=1e-7)"
     name: ClassVar[str]
 
     tolerance: float = option(

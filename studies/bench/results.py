@@ -315,14 +315,14 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
 
 
 def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
-    """Refuse a front with a point that is not in the problem's box."""
+    """Refuse a front with a point that is not within the problem's bounds."""
     lower, upper = problem.profile.box(problem.bound)
     table = front.coefficients
     for row, column in beyond(table, lower, upper):
         raise ValueError(
             f"a run of {front.record.method} has a_{column + 1} = {table[row, column]:.4g}, and "
-            f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within that "
-            "box, or leave the run out"
+            f"{problem.name} allows {lower[column]:.4g} to {upper[column]:.4g}; search within "
+            "these bounds, or leave the run out"
         )
 
 

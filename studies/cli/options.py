@@ -159,18 +159,19 @@ def limit_option(quantity: Quantity) -> click.Option:
 
 LIMITS = tuple(map(limit_option, QUANTITIES.values()))
 SET = option("--set", "parameters", type=SETTING, multiple=True, metavar="NAME=VALUE",
-             help="Set a parameter of the plant, as omega=3.2Hz or length=600mm.")  # fmt: skip
+             help="Set a parameter of the plant, such as omega=3.2Hz or length=600mm.")  # fmt: skip
 DRIVE = option("--drive", "drive", multiple=True, metavar="NAME=VALUE,...",
                help="Servo, transmission and friction of a plant of one joint, as far as you know "
                "them: position_loop=60/s,speed_loop=40Hz,reset_time=30ms,compliance=6N/um,rotor="
                "18kg,friction_motor=25N,friction_load=20N,dead_time=0.25ms.")  # fmt: skip
 ERROR = option("--error", "errors", type=Parsed("NAME=SHARE", parse_error), multiple=True,
-               help="Range of the error of frequency, damping or a parameter, as frequency=8%; the "
+               help="Range of the error of frequency, damping or a parameter, such as "
+                    "frequency=8%; the "
                "residual is then that of the worst case. `measured`: as identified.")  # fmt: skip
 BAND = (
     option("--band", metavar="LENGTH", help="Largest distance of the tip from its target after "
-           "arrival, as 0.1mm, for all errors of --error; without it for those of an identified "
-           "machine, 2 % of the frequency at least, or else 5 %."),
+           "arrival, such as 0.1mm, for all errors of --error; without it for those of an "
+           "identified machine, 2 % of the frequency at least, or else 5 %."),
     option("--margin", "band_margin", type=Parsed("number", parse_margin), default="3",
            metavar="TIMES", help="Times the residual limit that the band is, for what servo and "
            "dry friction leave besides."),
@@ -299,7 +300,8 @@ def objectives_option(
     """--objectives; a command may have `more` to say of them."""
     return option("--objectives", type=Parsed("names", parse),
                   default=",".join(RESIDUAL_AND_ENERGY), metavar="NAME,NAME,...",
-                  help="residual, energy and peaks beside them, as residual,energy,peak-torque; "
+                  help="residual, energy and peaks beside them, such as "
+                       "residual,energy,peak-torque; "
                   f"quietarm list objectives has them.{more}")  # fmt: skip
 
 
@@ -312,7 +314,7 @@ NOISE = (
            help="Evaluations of a candidate that is kept, whose mean counts; each is counted."),
 )  # fmt: skip
 METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, metavar="NAME=VALUE",
-                        help="A setting of the method, as crossover=0.7, or in a bench "
+                        help="A setting of the method, such as crossover=0.7, or in a bench "
                         "nsga2.crossover=0.7; quietarm list METHOD has them all.")  # fmt: skip
 WORKERS = option("--workers", type=Parsed("number", parse_workers), default="1",
                  help="Processes of this machine that share the work.")  # fmt: skip
@@ -322,7 +324,7 @@ SCHEDULER = option("--scheduler", metavar="ADDRESS",
                    help="Let the workers of this dask scheduler share the work, as in "
                    "tcp://host:8786.")  # fmt: skip
 PART = option("--part", type=Parsed("i/n", parse_share_of_work), default="1/1",
-              help="Do every n-th piece alone, as 2/8 in a queue's array job.")  # fmt: skip
+              help="Do every n-th piece alone, such as 2/8 in a queue's array job.")  # fmt: skip
 
 
 def profile_options(*more: str, words: str = "") -> tuple[click.Option, click.Option]:

@@ -50,7 +50,7 @@ def choose_kind(named: Kind | None, of_file: Mapping[str, type[Plant]] | None) -
         return named
     if not of_file:
         raise ValueError(
-            "missing argument PLANT; give one, as single-link, or a file by --plant-file"
+            "missing argument PLANT; give one, such as single-link, or a file by --plant-file"
         )
     if len(of_file) > 1:
         raise ValueError(f"the plant file defines {' and '.join(of_file)}; name one as PLANT")

@@ -173,7 +173,7 @@ def parse_of_plant(
     if joint == MIXED and limited.of_joints and not all(map(is_number, sides)):
         raise ValueError(
             f"{text!r} is for joints that turn or for those that slide, and the robot has both; "
-            "give a limit of each by its name, as x=500mm/s,elbow=90deg/s"
+            "give a limit of each by its name, such as x=500mm/s,elbow=90deg/s"
         )
     article = "an" if limited.name == "acceleration" else "a"
     what = f"{article} {limited.words}"
@@ -190,13 +190,13 @@ def parse_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:
     if ":" in text:
         ends = text.split(":")
         if len(ends) != 3:
-            raise ValueError(f"{text!r} is no axis; give from:to:step, as 10deg:90deg:5deg")
+            raise ValueError(f"{text!r} is no axis; give from:to:step, such as 10deg:90deg:5deg")
         first, last, step = map(parse, ends)
         steps = (last - first) / step if step else math.inf
         if not (steps > 0 and math.isfinite(steps)):
             raise ValueError(
                 f"{text!r}: steps of {ends[2]} do not lead from {ends[0]} to {ends[1]}; give "
-                "from:to:step, as 10deg:90deg:5deg"
+                "from:to:step, such as 10deg:90deg:5deg"
             )
         if steps >= MOST_VALUES:
             raise ValueError(
@@ -250,11 +250,13 @@ parse_share_of_work = _two(
     "/", int, int, "part; give the second of eight as 2/8", lambda number, of: 1 <= number <= of
 )
 """Read a part of the work: ``2/8``."""
-parse_interval = _two(":", float, float, "part; give its begin and end in seconds, as 3.2:7.3", lt)
+parse_interval = _two(
+    ":", float, float, "part; give its begin and end in seconds, such as 3.2:7.3", lt
+)
 """Read begin and end of a part of a recording [s]: ``3.2:7.3``."""
 _state = _two(
     ":", _lengths, _lengths,
-    "state; give W [m] of each mode, a colon, and W' [m/s] of each, as 5mm:-0.3 or 0,0:0.1,0",
+    "state; give W [m] of each mode, a colon, and W' [m/s] of each, such as 5mm:-0.3 or 0,0:0.1,0",
 )  # fmt: skip
 
 
@@ -269,12 +271,13 @@ def _of_drive(joint: str, otherwise: str) -> Callable[[str], tuple[float, float]
 _of_drives = {
     ROTARY: _of_drive(
         ROTARY,
-        "torque at a speed; give two or more, as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as "
+        "torque at a speed; give two or more, such as 1.5Nm@0,0.8Nm@20 with speeds in rad/s, or as "
         "190rpm",
     ),
     LINEAR: _of_drive(
         LINEAR,
-        "force at a speed; give two or more, as 100N@0,40N@0.5 with speeds in m/s, or as 500mm/s",
+        "force at a speed; give two or more, such as 100N@0,40N@0.5 with speeds in m/s, or as "
+        "500mm/s",
     ),
 }
 
@@ -344,7 +347,7 @@ def parse_pair(
     """Read a name and its value, ``omega=9``."""
     name, _, value = (part.strip() for part in text.partition("="))
     if not (name and value):
-        raise ValueError(f"{text!r} sets nothing; give {what} and its value, as {example}")
+        raise ValueError(f"{text!r} sets nothing; give {what} and its value, such as {example}")
     return name, value
 
 
@@ -380,7 +383,9 @@ def _scale(text: str) -> tuple[str, float]:
         scale = parse_quantity(number, "rad", "a scale") / float(divisor or 1)
         if scale and math.isfinite(scale):
             return quantity, scale
-    raise ValueError(f"{factor!r} is no scale; give a number other than 0, as {quantity}=2pi/4096")
+    raise ValueError(
+        f"{factor!r} is no scale; give a number other than 0, such as {quantity}=2pi/4096"
+    )
 
 
 def _of_column(quantity: str) -> Mapping[str, float]:
@@ -432,7 +437,7 @@ def parse_rate(text: str) -> float:
         if 1e-6 <= rate <= 1e12:  # from one in a fortnight to the fastest of oscilloscopes
             return rate
     raise ValueError(
-        f"{text!r} is no rate from 1e-6 to 1e12; give the samples per second, as 1000 or 1kHz"
+        f"{text!r} is no rate from 1e-6 to 1e12; give the samples per second, such as 1000 or 1kHz"
     )
 
 

@@ -28,8 +28,8 @@ _UNITS = ("As time:ms,angle:deg,tip:mm,acceleration:g, of a linear axis angle:mm
 RECORDED = (
     option("--time", help="Column of the time.  [default: the one that is called so, or the first "
            "if it rises evenly]"),
-    option("--rate", type=Parsed("rate", parse_rate), help="Samples per second, as 1kHz, of files "
-           "without a column of the time."),
+    option("--rate", type=Parsed("rate", parse_rate), help="Samples per second, such as 1kHz, of "
+           "files without a column of the time."),
     option("--angle", help="Column of the joint's angle, of a linear axis its position; without "
            "it the joint was held."),
     option("--tip", multiple=True, help="Column of a tip's displacement."),
@@ -39,7 +39,7 @@ RECORDED = (
            "the joints' names]"),
     option("--units", type=Parsed("units", parse_units), help=_UNITS),
     option("--scale", "scales", type=Parsed("scale", parse_scales), multiple=True,
-           help="What a count is in SI units, as angle=2pi/4096,tip=1e-5."),
+           help="What a count is in SI units, such as angle=2pi/4096,tip=1e-5."),
 )  # fmt: skip
 """What describes the columns of recordings: a command with these has `read_recordings`."""
 

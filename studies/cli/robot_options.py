@@ -21,7 +21,7 @@ LINE_NAMES = ("line_to", "line_by", "free_orientation", "link")
 """Options of a straight line in space."""
 PATH_NAMES = (*LINE_NAMES, "path_tolerance", "waypoints", "blend")
 """Options of a robot's path alone."""
-OF_ROBOT = "is for a robot, whose file is PLANT, as ur5.yaml"
+OF_ROBOT = "is for a robot, whose file is PLANT, such as ur5.yaml"
 
 
 def needed_path(given: Given, robot: Robot) -> GeometricPath:
@@ -42,7 +42,8 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
     None without any.
     """
     if given.path is not None:
-        given.refuse(["start", "target", *LINE_NAMES], "is in the file of --path")
+        given.refuse(["start", "target"], "is in the file of --path")
+        given.refuse([*LINE_NAMES], "is for a straight line from --start, without --path")
         if given.blend is not None:
             return _blended(given, robot)
         tolerance = _tolerance(given, robot)
@@ -64,7 +65,7 @@ def _waypoints(given: Given) -> tuple[int, int] | None:
         return None
     words = text.split(":")
     if len(words) != 2 or not all(word.strip().isdecimal() for word in words):
-        raise ValueError(f"--waypoints is {quoted(text)}; give two numbers, as 2:4")
+        raise ValueError(f"--waypoints is {quoted(text)}; give two numbers, such as 2:4")
     return int(words[0]), int(words[1])
 
 

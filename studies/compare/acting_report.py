@@ -82,8 +82,8 @@ def answer_of(motions: Sequence[ComparedMotion], plant: Plant) -> str:
     rivals = [motion for motion in others if motion.is_baseline != first.is_baseline]
     if rivals:
         best = rivals[0]
-        place = "of the plans {} is first" if first.is_baseline else "of the others {} is next"
-        words += f"; {place.format(best.name)}, {_after_and_energy(best)}"
+        kind = "plans" if first.is_baseline else "others"
+        words += f"; the first of the {kind} is {best.name}, {_after_and_energy(best)}"
     elif same_kind:
         words += f"; {same_kind[0].name} is next, {_after_and_energy(same_kind[0])}"
     return f"{words}."

@@ -22,9 +22,9 @@ from quietarm.ocp.simulation.free_vibration import FreeVibration
 
 Array = NDArray[np.float64]
 CRUISE, RAMP, ROUNDING = range(3)
-"""Boxes of a tuned S-curve: an S-curve's speed is three of them, convolved."""
+"""Pulses of a tuned S-curve: an S-curve's speed is three of them, convolved."""
 _MULTIPLES = (1, 2, 3)
-"""Periods that a box may be long."""
+"""Periods that a pulse may be long."""
 
 
 def bounds_of(task: PointToPoint) -> RigidBounds:
@@ -111,7 +111,7 @@ def tuned_s_curve(
 
 
 def _fixed_boxes(periods: Sequence[float], count: int) -> Iterator[Mapping[int, float]]:
-    """Every choice of boxes that are multiples of the periods, each period's a box of its own."""
+    """Every choice of pulses that are multiples of the periods, one of them for each period."""
     for places in permutations(range(count), len(periods)):
         for multiples in product(_MULTIPLES, repeat=len(periods)):
             yield {
@@ -132,7 +132,7 @@ def _least_products(span: float, bounds: RigidBounds) -> list[float]:
 def _best_boxes(
     least: Sequence[float], fixed: Mapping[int, float], duration: float | None
 ) -> tuple[float, ...] | None:
-    """Lengths of boxes, some of them fixed, of the least sum; None if none fit.
+    """Lengths of pulses, some of them fixed, of the least sum; None if none fit.
 
     With a duration they take that long, and the acceleration is the least. In the logarithms of the
     lengths both are convex programs: products are linear, and the sum of boxes, and their order, in
@@ -193,7 +193,7 @@ def _best_boxes(
 
 
 def _of_boxes(span: float, boxes: Sequence[float]) -> FreeMotion:
-    """The motion whose speed is boxes, convolved, over a way."""
+    """The motion whose speed is pulses, convolved, over a way."""
     jumps = dict[float, float]()
     for chosen in (some for k in range(len(boxes) + 1) for some in combinations(boxes, k)):
         sign = -1.0 if len(chosen) % 2 else 1.0

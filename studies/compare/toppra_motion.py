@@ -52,7 +52,7 @@ def toppra_motion(
     if not any(limit.name in _FORCED for limit in limits):
         raise ValueError(
             "toppra moves within a limit of acceleration or torque, and the move has neither; plan "
-            "it with one, as --acceleration-limit 40"
+            "it with one, such as --acceleration-limit 40"
         )
     grid = np.linspace(0.0, 1.0, _POINTS)
     with _quiet():

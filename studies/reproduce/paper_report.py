@@ -170,7 +170,7 @@ def _redrawn(result: Reproduction, title: str, case: Case, against_earlier: bool
     lines += [
         _of_paper(case, SIX_TERMS, six_terms),
         *_by_search(result, case, SIX_TERMS, of_search),
-        Line(gradient, "gradient, N = 6, same box", PLAN.colour, PLAN.dash),
+        Line(gradient, "gradient, N = 6, same bounds", PLAN.colour, PLAN.dash),
     ]
     return motion_figure(
         lines,

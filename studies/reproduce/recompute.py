@@ -129,15 +129,15 @@ class Reproduction:
         return evaluate_coefficients(case.task, [])
 
     def same_residual(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan in the paper's box, with the residual limit of the search."""
+        """The gradient's plan within the paper's bounds, with the residual limit of the search."""
         return self.answers[Piece("gradient, same residual", case, terms)]
 
     def in_box(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan in the paper's box, at rest."""
+        """The gradient's plan within the paper's bounds, at rest."""
         return self.answers[Piece("gradient, in box", case, terms)]
 
     def free(self, case: Case, terms: int) -> Plan:
-        """The gradient's plan without a box, at rest."""
+        """The gradient's plan without bounds, at rest."""
         return self.answers[Piece("gradient, no box", case, terms)]
 
     def earlier(self, case: Case) -> Plan | None:
@@ -169,7 +169,7 @@ class Reproduction:
             },
             case.search_label: self.searched[case, SIX_TERMS].middle
             or "the middle seed has no such small residual",
-            "gradient, in the box": self.in_box(case, SIX_TERMS),
+            "gradient, within the bounds": self.in_box(case, SIX_TERMS),
             "gradient": self.free(case, SIX_TERMS),
             "robust plan": self.answers[Piece("robust", case)],
             "free motion": self.floor(case),
@@ -307,7 +307,7 @@ def _search(piece: Piece, settings: Mapping[str, Any], folder: Path | None) -> F
 
 
 def _checked(case: Case, points: int) -> CrossCheck:
-    """Points of the front in the paper's box, by both solvers of the gradient."""
+    """Points of the front within the paper's bounds, by both solvers of the gradient."""
     profile = CycloidPolynomial(SIX_TERMS)
     return cross_check(
         epsilon_front(

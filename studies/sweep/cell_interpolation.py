@@ -82,7 +82,7 @@ class Interpolation:
         return usable
 
     def _first(self, box: Sequence[Any], order: int) -> tuple[Any, ...]:
-        """The first of the cells along each axis through which the polynomial of a box goes."""
+        """The first of the cells along each axis through which a cell's polynomial goes."""
         sizes = [min(order, len(axis)) for axis in self.axes]
         return tuple(
             np.clip(place - (size // 2 - 1), 0, len(axis) - size)

@@ -51,7 +51,7 @@ class PlanSettings:
     Attributes
     ----------
     residual_limit : float
-        Largest F1 [m]; 0 for rest on arrival, or for the default of an uncertain task.
+        Largest residual [m]; 0 for rest on arrival, or for the default of an uncertain task.
     bound : float or None
         Largest absolute coefficient.
     starts : int

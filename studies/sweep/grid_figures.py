@@ -135,7 +135,7 @@ def _variables(store: Store) -> list[tuple[str, Array, float]]:
     shown, scale = tip_scale(task.plant.tip_unit)
     residual = residual_label(task.plant.tip_unit, task.residual_window)
     variables = {
-        "energy": ("energy F2 [J]", 1.0, 0.0),
+        "energy": ("energy [J]", 1.0, 0.0),
         "residual": (residual, scale, rest_of(task) * scale),
         "price_residual": (f"shadow price [J/{shown}]", 1 / scale, _LEAST_PRICE / scale),
     }

@@ -74,7 +74,9 @@ def sweep(
     units = task.plant.units()
     units |= {name: unit.of(task.plant.joint) for name, unit in OF_MOVES.items()}
     if not isinstance(axes, Mapping):
-        raise ValueError(f"axes are {axes!r}; give values by name, as {{'target': [0.3, 0.6]}}")
+        raise ValueError(
+            f"axes are {axes!r}; give values by name, such as {{'target': [0.3, 0.6]}}"
+        )
     for name in axes:
         if name not in units:
             raise ValueError(has_no(task.plant.name, "axis", name, units))

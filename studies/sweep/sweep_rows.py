@@ -46,7 +46,7 @@ def sweep_rows(store: Store, *, verbose: bool = False) -> list[tuple[str, str]]:
         largest = f"at {largest}" if largest == "rest" else f"at most {largest}"
         rows += [
             ("energy", f"{energy[known].min():.4g} to {energy[known].max():.4g} J"),
-            ("residual", f"{largest} {residual_place(grid.task)}, by CVODES"),
+            ("residual", f"{largest} {residual_place(grid.task)}"),
         ]
         rows += figure_spans(store)
         rows += [("cold starts", _cold_words(store, verbose))]

@@ -110,7 +110,7 @@ def test_parts_share_the_plan(tmp_path, planned):
 @pytest.mark.parametrize(
     ("typed", "words"),
     [
-        (["--part", "5/4"], "part is '5/4'; give a number of how many, as 2/4"),
+        (["--part", "5/4"], "part is '5/4'; give a number of how many, such as 2/4"),
         (["--axis", "budgets"], "no axis is called 'budgets'; give one of centre,"),
     ],
 )

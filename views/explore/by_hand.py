@@ -50,7 +50,7 @@ _SHORTEST = 0.1
 _LONGEST = 5.0
 _FURTHEST = 2.0
 _TENTH = 0.1
-"""To which the range of coefficients is rounded up, where one is outside of the box."""
+"""To which the range of coefficients is rounded up, where one is outside of the bounds."""
 _USUAL_BOX = 0.2
 """The paper's for the single link."""
 _LEAST = 1e-3
@@ -173,7 +173,7 @@ class MoveByHand:
         return [f"a{number}" for number in range(1, len(self.coefficients) + 1)]
 
     def reach_of(self, coefficient: float) -> float:
-        """Return how far a slider goes on either side of 0: the box, or more if it is beyond that.
+        """Return how far a slider goes on either side of 0: the bound, or more if it is beyond.
 
         The box is the bound that the gradient is asked for, the profile's own or the paper's. A
         coefficient at its end is given room: else its slider could go one way alone.

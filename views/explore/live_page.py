@@ -95,6 +95,7 @@ class LivePage:
         alive = {
             **begun,
             "front": front,
+            "traces": front is None and self._traces_at_first,
             "plants": list(self._plants),
             "profiles": [self._begun.family] if self._begun.library else list(profiles),
             "fixed": self._begun.library is not None,
@@ -102,6 +103,11 @@ class LivePage:
             "kept": {"colour": colour_name(kept), "mark": kept.mark, "filled": True},
         }
         return page_html("quietarm explore", [begun["move"]], alive)
+
+    @property
+    def _traces_at_first(self) -> bool:
+        """True if the front of the first move is known within seconds: of one joint, to be set."""
+        return self._begun.library is None and len(self._begun.task.plant.joint_names) == 1
 
     def answer(self, path: str, body: bytes, report: Progress) -> dict[str, Any]:
         """Answer what one of `paths` is asked, in JSON; of a front `report` is told how far it is.

@@ -342,7 +342,9 @@ def _check_definition(kind: type[ExportFormat]) -> None:
     label = kind.__name__
     for entry, example in {"name": "'mine'", "endings": "('.nc',)", "meaning": "'G-code'"}.items():
         if not hasattr(kind, entry):
-            raise ValueError(f"format {label} has no {entry}; give one, as {entry} = {example}")
+            raise ValueError(
+                f"format {label} has no {entry}; give one, such as {entry} = {example}"
+            )
     if not isinstance(kind.endings, tuple) or not kind.endings:
         raise ValueError(f"endings of {label} are {quoted(kind.endings)}; give them as ('.nc',)")
     for ending in (*kind.endings, *kind.beside):

@@ -22,11 +22,11 @@ from quietarm.views.tips import tip_words
 Array = NDArray[np.float64]
 PAUSE = ExportSetting(
     "pause", 0.0, "Of several plans, one move after another: time between two, in which the tip "
-    "rests, as 0.5.", least=0.0, most=3600.0, unit="s",
+    "rests, such as 0.5.", least=0.0, most=3600.0, unit="s",
 )  # fmt: skip
 THIN = ExportSetting(
     "thin", None, "Of the points at --rate only those that a controller needs, whose quintics keep "
-    "joints within this, as 0.001deg or 1e-5.", least=1e-9, most=1.0, unit="rad", kind=float,
+    "joints within this, such as 0.001deg or 1e-5.", least=1e-9, most=1.0, unit="rad", kind=float,
 )  # fmt: skip
 
 

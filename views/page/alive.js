@@ -161,7 +161,17 @@ const askAtRest = () => {
     robustness.now = answer.robustness ?? null;
     noteStale(false);
     drawRobustness();
+    if (alive.traces) traceAtFirst();
   }, AT_REST);
+};
+// The front of the move that the page begins with: nothing is empty before the first drag.
+const traceAtFirst = async () => {
+  alive.traces = false;
+  const { front } = await ask("front", UNSET);
+  if (!front || traced.front || keyOf(question) !== keyOf(UNSET)) return;
+  traced.front = unpackMove(front);
+  state.front = traced.front;
+  enter(state.move);
 };
 const showRows = (rows) => {
   const list = byId("rows");

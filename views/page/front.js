@@ -51,7 +51,7 @@ const drawFront = () => {
   // beside the axis there is room for the handle of a motion at rest
   const box = axes(byId("front"), plot, across, along, { left: 30 + 7.2 * widest, right: 14, top: 26, bottom: 38, gap: KNOB + 4 });
   front.box = box;
-  draw(plot, "text", { x: 0, y: 10 }, `energy F2 [${along.unit("J")}]`);
+  draw(plot, "text", { x: 0, y: 10 }, `energy [${along.unit("J")}]`);
   draw(plot, "text", { x: (box.left + box.right) / 2, y: box.bottom + 34, "text-anchor": "middle" }, `${residual} [${across.unit(unit)}]`);
   const places = points.map(placeOf);
   front.obstacles = [];

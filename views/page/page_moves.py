@@ -41,7 +41,7 @@ class Choice:
     plan : Plan
         Its motion.
     residual, energy : float
-        F1 [m] and F2 [J] as its front states them; of a plan the plan's.
+        Residual [m] and energy [J] as its front states them; of a plan the plan's.
     price : float or None
         What a wider residual limit saves [J/m], where that is known.
     name : str
@@ -69,7 +69,7 @@ class Beside:
     label, kind : str
         What the key calls them; `search`, `gradient`, `plan` or `known`, which says their look.
     points : tuple of (float or None, float)
-        F1 [m] and F2 [J]; None where a residual is not known.
+        Residual [m] and energy [J]; None where a residual is not known.
     """
 
     label: str
@@ -158,7 +158,7 @@ def move_by_hand(plan: Plan, cycloid: Plan) -> Move:
 
 
 def _belong_together(first: Front | Plan, answer: Front | Plan) -> bool:
-    """Return whether F1 and F2 mean the same for both answers, and the limits of two fronts too."""
+    """Return whether two answers mean the same by residual, energy and a front's limits."""
     tasks = [first.task, answer.task]
     if not (isinstance(first, Front) and isinstance(answer, Front)):
         tasks = [replace(task, bounds={}, torque_speed=None) for task in tasks]

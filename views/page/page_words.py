@@ -40,7 +40,7 @@ class ShownFigures:
 
     @classmethod
     def of(cls, plan: Plan, residual: float, energy: float) -> Self:
-        """Return the figures of a motion, with F1 and F2 as its front states them."""
+        """Return the figures of a motion, with residual and energy as its front states them."""
         values = {
             figure.name: plan.figures.get(figure.name, nan)
             for figure in figures_in(PAGE, plan.task)
@@ -81,7 +81,7 @@ def figure_names(task: PointToPoint) -> list[str]:
 def _figure_name(figure: Figure, plant: Plant) -> str:
     unit = figure.unit.on(plant.joint, plant.tip_unit)
     shown = tip_scale(plant.tip_unit)[0] if unit.is_tip_way else unit.drawn or "-"
-    label = {RESIDUAL: "residual vibration F1", ENERGY: "energy F2"}.get(figure.name)
+    label = {RESIDUAL: "residual vibration", ENERGY: "energy"}.get(figure.name)
     if figure.quantity:
         label = f"peak {QUANTITIES[figure.quantity].label.of(plant.joint)}, moving"
     return f"{label or figure.label_on(plant)} [{shown}]"
@@ -264,11 +264,11 @@ def _about(energy: float) -> str:
 
 
 def robust_note(task: PointToPoint) -> str:
-    """Say what F1 is of an uncertain task; nothing of others."""
+    """Say what the residual of an uncertain task is; nothing of others."""
     if not task.ranges:
         return ""
     scenarios = len(task.scenarios)
     return (
-        f"F1 is the worst of {scenarios} plants within the errors; the motion shown is the nominal "
-        "plant's."
+        f"The residual is the worst of {scenarios} plants within the errors; the motion shown is "
+        "the nominal plant's."
     )

@@ -377,7 +377,7 @@ def _content(
         "duration": task.duration,
         "arrival": int(np.searchsorted(times, task.duration)),
         "end": float(times[-1]),
-        "residual": f"residual vibration F1 {window_words(task.residual_window)}",
+        "residual": f"residual vibration {window_words(task.residual_window)}",
         "rest": rest_of(task),
         "unit": unit,
         "factor": factor,

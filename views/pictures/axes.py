@@ -124,13 +124,13 @@ def legend_below(figure: Figure, axes: Sequence[Axes], columns: int, size: float
 
 def name_objectives(ax: Axes, tip_unit: str, window: float | None = None) -> None:
     """Label the axes of a front; residuals by their window [s], where one is given."""
-    ax.set(xlabel=residual_label(tip_unit, window), ylabel="energy F2 [J]")
+    ax.set(xlabel=residual_label(tip_unit, window), ylabel="energy [J]")
 
 
 def residual_label(tip_unit: str, window: float | None = None) -> str:
     """The label of residuals in the unit that is shown, within a window [s] where there is one."""
     within = "" if window is None else f" {window_words(window)}"
-    return f"residual F1{within} [{tip_scale(tip_unit)[0]}]"
+    return f"residual{within} [{tip_scale(tip_unit)[0]}]"
 
 
 def legend_of(axes: Sequence[Axes]) -> tuple[list[Artist], list[str]]:

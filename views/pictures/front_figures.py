@@ -181,7 +181,7 @@ def draw_hypervolume(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     corner = f"{tip_words(residual, _tip_unit(fronts))} and {energy:.4g} J"
     if peaks:
         corner = f"twice the plain cycloid's energy and peak{'s' * (len(peaks) > 1)}"
-    ax.set_ylabel(f"share of the box\nup to {corner}")
+    ax.set_ylabel(f"share of the area\nup to {corner}")
     ax.xaxis.set_major_locator(MaxNLocator(5, integer=True))
     return ax
 
@@ -217,7 +217,7 @@ def draw_seed_energies(fronts: Sequence[Front], ax: Axes | None = None) -> Axes:
     words = f"{spread.count} of {spread.seeds} seeds"
     ax.set_title(f"energy at {level}{figures}\n{quartiles}{words}", **TITLE)
     ax.set_xlabel(f"seed (x: never within {level})")
-    ax.set_ylabel("energy F2 [J]")
+    ax.set_ylabel("energy [J]")
     if len(fronts) <= 2 * _MOST_NAMED:
         ax.set_xticks(range(len(fronts)), [str(front.record.seed) for front in fronts])
     ax.margins(x=0.1, y=0.2)

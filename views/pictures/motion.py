@@ -71,7 +71,7 @@ class Line:
         Its dashes, where there is a colour.
     """
 
-    example: ClassVar[str] = "a line, as Line(plan, 'plan')"
+    example: ClassVar[str] = "a line, such as Line(plan, 'plan')"
 
     plan: Plan | Floor
     label: str

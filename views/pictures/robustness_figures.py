@@ -129,7 +129,7 @@ def motions_figure(motions: Sequence[ComparedMotion], title: str, tip_unit: str 
     curves = {motion.name: motion.robustness for motion in motions if motion.robustness is not None}
     meanings = [motion.meaning for motion in motions if motion.robustness is not None]
     names = list(next(iter(curves.values())).ranges) if curves else []
-    caption = caption_of_judged(motions, tip_unit)
+    caption = caption_of_judged(motions)
     figure, axes = side_by_side(1 + len(names), caption, title, width=6.0)
     draw_motions(motions, axes[0], tip_unit)
     if any(judged.worst for judged in motions):

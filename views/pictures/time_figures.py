@@ -33,7 +33,7 @@ def time_front_figure(front: TimeFront) -> Figure:
         )
     band = tip_words(front.task.band or 0.0, "m")
     ax.set_xlabel(f"acts after [s], within {band} {ranges_words(front.task.ranges)}")
-    ax.set_ylabel("energy F2 [J]")
+    ax.set_ylabel("energy [J]")
     ax.margins(0.12)  # for the words beside the points
     ax.set_ylim(bottom=0.0)
     head(figure, title_of_picture(front.task))

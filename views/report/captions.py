@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,57 +21,83 @@ from quietarm.views.tips import tip_words
 if TYPE_CHECKING:
     from quietarm.studies.compare.compared_motions import ComparedMotion
 
+_WORST = " in the worst case"
 _MOST_SAID = 3
 """Of more motions a sentence says only between which figures they are."""
 
 
 def caption_of_motions(motions: Mapping[str, Plan | Floor]) -> str:
     """Say what motions take and leave, by name: "The plan takes 0.02 J and arrives at rest"."""
-    said = {name: (motion.energy, _said(motion)) for name, motion in motions.items()}
-    residuals = [motion.residual for motion in motions.values()]
-    unit = next(iter(motions.values())).task.plant.tip_unit
-    return _caption(said, max(residuals), unit, [motion.candidate for motion in motions.values()])
+    said = [
+        _Said(name, motion.energy, _left_by(motion), _said(motion))
+        for name, motion in motions.items()
+    ]
+    return _caption(said, [motion.candidate for motion in motions.values()])
 
 
-def caption_of_judged(motions: Sequence[ComparedMotion], tip_unit: str) -> str:
+def caption_of_judged(motions: Sequence[ComparedMotion]) -> str:
     """Say what compared motions take and leave; of an uncertain plant by their worst cases."""
     known = {judged.name: judged for judged in motions if judged.motion is not None}
-    said = dict[str, tuple[float, str]]()
-    residuals = [0.0]
+    said = list[_Said]()
     for name, judged in known.items():
         assert judged.motion is not None
-        residuals.append(judged.motion.residual)
-        words = left_words(judged.motion.residual, judged.task)
+        left = judged.motion.residual
+        words = left_words(left, judged.task)
         if judged.worst is not None:
-            residuals.append(judged.worst.residual)
-            words = f"{left_words(judged.worst.residual, judged.task)} in the worst case"
+            left = judged.worst.residual
+            words = f"{left_words(left, judged.task)}{_WORST}"
         if judged.motion.candidate is not None:
             words = ", ".join([words, *further_words(judged.motion.candidate, CAPTION)])
-        said[name] = judged.motion.energy, words
+        left = 0.0 if is_at_rest(left, judged.task) else left
+        said.append(_Said(name, judged.motion.energy, left, words))
     candidates = [judged.motion.candidate for judged in known.values() if judged.motion is not None]
     judged_by_cvodes = [candidate for candidate in candidates if candidate is not None]
-    return _caption(said, max(residuals), tip_unit, judged_by_cvodes)
+    return _caption(said, judged_by_cvodes)
 
 
-def _caption(
-    said: Mapping[str, tuple[float, str]],
-    most_left: float,
-    tip_unit: str,
-    candidates: Sequence[JudgedMotion],
-) -> str:
+class _Said(NamedTuple):
+    """One motion as a sentence says it: energy [J], what it leaves [m], how it ends in words."""
+
+    name: str
+    energy: float
+    left: float
+    words: str
+
+
+def _caption(said: Sequence[_Said], candidates: Sequence[JudgedMotion]) -> str:
     if not said:
         return "None of these motions is possible"
     if len(said) > _MOST_SAID:
-        energies = [energy for energy, _ in said.values()]
-        return (
-            f"{len(said)} motions take {min(energies):.3g} to {max(energies):.3g} J; after arrival "
-            f"the tip swings by up to {tip_words(most_left, tip_unit)}" + _spans(candidates)
+        caption = _best_of(said) + _spans(candidates)
+    else:
+        caption = "; ".join(
+            f"{_named(one.name)} takes {one.energy:.3g} J and {one.words}" for one in reversed(said)
         )
-    sentences = [
-        f"{_named(name)} takes {energy:.3g} J and {words}" for name, (energy, words) in said.items()
-    ]
-    caption = "; ".join(reversed(sentences))
     return caption[:1].upper() + caption[1:]
+
+
+def _best_of(said: Sequence[_Said]) -> str:
+    """Say which of many motions is the stillest, and which takes the least energy."""
+    still = min(said, key=lambda one: (one.left, one.energy))
+    cheap = min(said, key=lambda one: one.energy)
+    first = f"{_named(still.name)} {still.words} for {still.energy:.3g} J"
+    if cheap is still:
+        words = f"{first}, the stillest and cheapest of {len(said)} motions"
+    else:
+        words = (
+            f"{first}, the stillest of {len(said)} motions; "
+            f"{_named(cheap.name)} is the cheapest: {cheap.energy:.3g} J, and {cheap.words}"
+        )
+    if _WORST in words:
+        return f"In the worst case {words.replace(_WORST, '')}"
+    return words
+
+
+def _left_by(motion: Plan | Floor) -> float:
+    """Return what a motion leaves [m], a robust plan in the worst case; 0 if that is rest."""
+    worst = motion.worst if isinstance(motion, Plan) else None
+    left = motion.residual if worst is None else worst.residual
+    return 0.0 if is_at_rest(left, motion.task) else left
 
 
 def _spans(candidates: Sequence[JudgedMotion]) -> str:
@@ -112,11 +138,11 @@ def verified_words(motions: Sequence[Plan | Floor]) -> str:
     """Say how a picture's figures are verified: by how much another integrator differs."""
     checks = [motion.verification for motion in motions if isinstance(motion, Plan)]
     if not checks:
-        return "by CVODES"
+        return "by a second integrator"
     share = max(check.energy_share for check in checks)
     if all(check.agrees for check in checks):
-        return f"verified by CVODES, within {share:.0e} of the energy"
-    return f"not verified: CVODES differs by {share:.0e} of the energy"
+        return "checked by a second integrator"
+    return f"not verified: a second integrator differs by {share:.0e} of the energy"
 
 
 def caption_of_front(front: Front) -> str:
@@ -125,7 +151,7 @@ def caption_of_front(front: Front) -> str:
     if not front.points:
         return "No point of this front was found"
     stillest = front.points[0]
-    cheapest = front.points[-1]
+    cheapest = min(front.points, key=lambda point: point.energy)
     worst = worst_of(front.judged(stillest))
     still = scenarios_words(stillest.residual, worst, front.task)
     still = "at rest" if still == "rest" else f"with {still}"
@@ -155,9 +181,12 @@ def caption_of_fronts(fronts: Sequence[Front], level: float = SEARCH_RESIDUAL) -
     reached = [energy for energy in energies if energy < float("inf")]
     if not reached:
         return f"None of {len(fronts)} seeds comes within {within}"
+    least, most = (f"{energy:.4g}" for energy in (min(reached), max(reached)))
+    verb = "takes" if len(reached) == 1 else "take"
+    span = least if least == most else f"{least} to {most}"
     return (
-        f"Within {within}, {len(reached)} of {len(fronts)} seeds take {min(reached):.4g} to "
-        f"{max(reached):.4g} J{spans_of_fronts(fronts, level)}"
+        f"Within {within}, {len(reached)} of {len(fronts)} seeds {verb} {span} J"
+        f"{spans_of_fronts(fronts, level)}"
     )
 
 

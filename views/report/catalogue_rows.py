@@ -12,16 +12,17 @@ from quietarm.metaheuristics.methods.settings import MethodSetting
 from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.problems.card import card_of
 from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
-from quietarm.models import Plant
+from quietarm.models import Plant, RobotOnPath
 from quietarm.ocp.checks import spelling, unknown
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
 from quietarm.ocp.objectives import known_objectives
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.views.report.method_rows import GRADIENT_LABELS, label_of
-from quietarm.views.report.words import error_words, objective_words, window_words
+from quietarm.views.report.words import counted, error_words, objective_words, window_words
 
 Row = tuple[str, str]
+ROBOT_FILE = "A robot of a URDF that follows a path; PLANT is its file, such as ur5.yaml."
 KINDS = ("plants", "problems", "methods", "objectives")
 
 
@@ -33,22 +34,40 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         return _method_rows(name, known)
     name = spelt[spelling(name)]
     if name == "plants":
-        rows = [(plant, (kind.__doc__ or "").partition("\n")[0]) for plant, kind in plants.items()]
-        return "plants, with `quietarm list NAME` for the parameters", rows
+        rows = [
+            (plant, ROBOT_FILE if kind is RobotOnPath else (kind.__doc__ or "").partition("\n")[0])
+            for plant, kind in plants.items()
+        ]
+        said = f"{counted(len(rows), 'plant')}; `quietarm list NAME` has the parameters of one"
+        return said, rows
     if name == "problems":
         rows = [(label, _problem(problem)) for label, problem in PROBLEMS.items()]
-        return "problems, each with a reference front", rows
+        windows = {window_words(problem.task.residual_window) for problem in PROBLEMS.values()}
+        said = f"{counted(len(rows), 'problem')}, each with a tested reference front"
+        if len(windows) == 1:
+            said += f"; residuals {windows.pop()}"
+        else:
+            rows = [(label, f"{words}, {_window(PROBLEMS[label])}") for label, words in rows]
+        return said, rows
     if name == "methods":
-        rows = [(method, label_of(method)) for method in (*GRADIENT_LABELS, *PRESETS)]
-        return "methods, with `quietarm list NAME` for the settings", rows
+        rows = [(method, f"{label_of(method)}, by the gradient") for method in GRADIENT_LABELS]
+        rows += [(method, f"{label_of(method)}: {PRESETS[method].source}") for method in PRESETS]
+        said = f"{counted(len(rows), 'method')}; `quietarm list NAME` has the settings of one"
+        return said, rows
     if name == "objectives":
         names = known_objectives()
         rows = [(objective_words([name]), _objective(name)) for name in names]
-        return "objectives, for --objectives of search, front and bench", rows
+        said = f"{counted(len(rows), 'objective')} for --objectives of search, front and bench"
+        return said, rows
     if name in plants:
         rows = [(entry.name, _parameter(entry)) for entry in plants[name].parameter_fields()]
-        return f"{name}: --set NAME=VALUE, in SI or as 2Hz, 600mm, 200g", rows
-    return name, [("problem", _problem(PROBLEMS[name])), *_card(PROBLEMS[name])]
+        many = counted(len(rows), "parameter")
+        return f"{name} has {many}: --set NAME=VALUE, in SI or such as 2Hz, 600mm, 200g", rows
+    problem = PROBLEMS[name]
+    words = f"{_problem(problem)}, {_window(problem)}"
+    task = problem.task
+    move = f"{task.plant.name}, {task.ends} in {task.duration:g} s"
+    return f"{name}: {move}, with a tested reference front", [("problem", words), *_card(problem)]
 
 
 def _method_rows(typed: str, others: Sequence[str]) -> tuple[str, list[Row]]:
@@ -72,7 +91,8 @@ def _method_rows(typed: str, others: Sequence[str]) -> tuple[str, list[Row]]:
 def _setting(setting: MethodSetting) -> Row:
     """A setting's default and meaning."""
     default = "-" if setting.default is None else setting.default
-    return setting.name, f"{default}: {setting.meaning}"
+    meaning = setting.meaning.removesuffix(".")
+    return setting.name, f"{default}: {meaning[:1].lower()}{meaning[1:]}"
 
 
 def _objective(name: str) -> str:
@@ -81,7 +101,10 @@ def _objective(name: str) -> str:
     if figure.quantity:
         label = QUANTITIES[figure.quantity].label
         return f"the largest {label} during the move [{figure.unit}]"
-    words = {RESIDUAL: "F1, the largest tip displacement after arrival", ENERGY: "F2, of the drive"}
+    words = {
+        RESIDUAL: "the largest tip displacement after arrival",
+        ENERGY: "the energy of the drive",
+    }
     return f"{words[name]} [{figure.unit}], of every front"
 
 
@@ -89,7 +112,7 @@ def _parameter(entry: Field[Any]) -> str:
     """A parameter's value, meaning and source."""
     words = "no default" if entry.default is MISSING else f"{entry.default:.5g}"
     for key, form in {"unit": " {}", "meaning": ": {}", "source": "  ({})"}.items():
-        if entry.metadata.get(key, "-") not in ("", "-"):
+        if entry.metadata.get(key, "-") not in ("", "-", "count"):
             words += form.format(entry.metadata[key])
     return words
 
@@ -99,7 +122,7 @@ def _card(problem: NamedProblem) -> list[Row]:
     if len(problem.objectives) > 2:  # a card is of a curve
         return []
     card = card_of(problem.fronts()[0])
-    ranges = (f"{1e3 * begin:.3g} to {1e3 * end:.3g} mm" for begin, end in card.nonconvex)
+    ranges = (f"{_millimetres(begin)} to {_millimetres(end)} mm" for begin, end in card.nonconvex)
     where = f": {', '.join(ranges)}" if card.nonconvex else ""
     active = ", ".join(f"a_{i}" for i in card.active) or "none"
     return [
@@ -109,8 +132,13 @@ def _card(problem: NamedProblem) -> list[Row]:
     ]
 
 
+def _millimetres(length: float) -> str:
+    """Return a length [m] in mm; less than a thousandth of one is 0."""
+    return "0" if length < 1e-6 else f"{1e3 * length:.3g}"
+
+
 def _problem(problem: NamedProblem) -> str:
-    """The box of a problem, and what it has beyond two objectives."""
+    """Return the bounds of a problem, and what it has beyond two objectives."""
     errors = error_words(problem.task)
     limits = ", ".join(map(str, problem.task.limits))
     return ", ".join([
@@ -118,5 +146,8 @@ def _problem(problem: NamedProblem) -> str:
         *([f"limits {limits}"] if limits else []),
         *([f"objectives {objective_words(problem.objectives)}"] * (len(problem.objectives) > 2)),
         *([f"the largest residual with {errors}"] if errors else []),
-        f"residuals {window_words(problem.task.residual_window)}",
     ])  # fmt: skip
+
+
+def _window(problem: NamedProblem) -> str:
+    return f"residuals {window_words(problem.task.residual_window)}"

@@ -29,9 +29,10 @@ def drive_rows(plan: Plan) -> list[Row]:
     try:
         figures = plan.candidate.on_drive
     except SolverFailedError as error:
-        return [*_stated_rows(plant), ("on the drive", f"warning: {error}")]
+        return [*_stated_rows(plant), ("on the drive", f"warning: {error}"), *_doubts(plan)]
     if figures is None:
-        return [*_stated_rows(plant), ("on the drive", "not simulated: " + _LOOPS)]
+        unknown = ("on the drive", "not simulated: " + _LOOPS)
+        return [*_stated_rows(plant), unknown, *_doubts(plan)]
     residual = tip_words(figures.residual, plant.tip_unit)
     way = "m" if plant.joint == LINEAR else "rad"
     following = tip_words(figures.following_error, way)
@@ -48,7 +49,42 @@ def drive_rows(plan: Plan) -> list[Row]:
             f"of the plan, peak {figures.peak_torque:.4g} {effort} with friction{heat}",
         ),
         *_worst_on_drive(plan),
+        *_doubts(plan),
     ]
+
+
+def _doubts(plan: Plan) -> list[Row]:
+    """Return a warning for each number of a drive that no servo or belt has, with the remedy."""
+    # a tenth of the way: belts and gears of machines give by a hundredth of that
+    most_give = 0.1
+    plant, drive = plan.task.plant, plan.task.plant.drive
+    assert drive is not None
+    rows = list[Row]()
+    if drive.position_loop is not None and drive.speed_loop is not None:
+        speed_gain = math.tau * drive.speed_loop
+        if drive.position_loop > speed_gain:
+            rows.append(
+                (
+                    "warning",
+                    f"the position loop of {drive.position_loop:g}/s is faster than the speed loop "
+                    f"of {drive.speed_loop:g} Hz, which is {speed_gain:.3g}/s; position_loop is "
+                    "usually a third of that at most",
+                )
+            )
+    gives = (drive.compliance or 0.0) * plan.figures.peak("torque")
+    distance = abs(plan.task.span)
+    if gives > most_give * distance:
+        way = "m" if plant.joint == LINEAR else "rad"
+        unit = unit_of("compliance", plant.joint)
+        rows.append(
+            (
+                "warning",
+                f"with a compliance of {drive.compliance:.3g} {unit} belt or gear gives by "
+                f"{gives:.3g} {way} at the plan's peak, and its way is {distance:.3g} {way}; check "
+                "the unit of compliance",
+            )
+        )
+    return rows
 
 
 def _worst_on_drive(plan: Plan) -> list[Row]:

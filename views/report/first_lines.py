@@ -23,7 +23,21 @@ def plan_answer(plan: Plan, *, fastest: bool = False) -> list[str]:
     if fastest:
         subject = f"the fastest plan takes {plan.task.duration:.4g} s,"
     words = f"{subject} {_energy_and_end(plan.candidate, plan.worst)}"
-    return _beside_the_cycloid([words], plan.candidate)
+    return _beside_the_cycloid([words, *_left_on_drive(plan)], plan.candidate)
+
+
+def _left_on_drive(plan: Plan) -> list[str]:
+    """Return what a plan leaves on its drive; nothing if the drive cannot be simulated."""
+    try:
+        figures = plan.candidate.on_drive
+    except SolverFailedError:
+        return ["its drive does not follow it"]
+    if figures is None or is_at_rest(figures.residual, plan.task):
+        return []
+    nominal = "" if plan.worst is None else " without an error"
+    return [
+        f"on its drive it leaves {tip_words(figures.residual, plan.task.plant.tip_unit)}{nominal}"
+    ]
 
 
 def floor_answer(floor: Floor, plan: Plan | None) -> list[str]:

@@ -21,13 +21,13 @@ from quietarm.ocp.robustness import worst_of, worst_of_rows
 from quietarm.views.report.captions import caption_of_front, caption_of_fronts
 from quietarm.views.report.plan_rows import worst_in_words
 from quietarm.views.report.words import (
+    corner_words,
     counted,
     energy_words,
     residual_place,
     residual_words,
     scenarios_words,
     spread_words,
-    values_words,
 )
 from quietarm.views.tips import tip_words
 
@@ -74,11 +74,10 @@ def search_lines(fronts: Sequence[Front], notes: Sequence[str] = ()) -> list[str
     if len(fronts) > 1:
         energies = energies_at(fronts)
         level = tip_words(SEARCH_RESIDUAL, task.plant.tip_unit)
-        corner = values_words(objectives_on(task.plant, fronts[0].objectives), fronts[0].reference)
         lines += [
             f"energy within {level}: {spread_words(energies, '.4g', ' J')}, median (quartiles)",
-            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to {corner}, "
-            "median (quartiles)",
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the area up to "
+            f"{corner_words(fronts[0])}, median (quartiles)",
         ]
     for front in fronts:
         points = [*_chosen_points(front), *_noise_lines(front)]

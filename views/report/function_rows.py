@@ -8,12 +8,17 @@ from typing import Any
 from quietarm.metaheuristics.spread import hypervolumes
 from quietarm.ocp import Front
 from quietarm.ocp.front.function_front import FunctionFront
-from quietarm.views.report.words import counted, spread_words
+from quietarm.views.report.words import (
+    corner_words,
+    counted,
+    spread_words,
+    values_of_function,
+)
 
 
 def function_lines(fronts: Sequence[Front]) -> list[str]:
     """Fronts of one function, and the spread over several seeds."""
-    lines = list[str]()
+    lines = [_answer(fronts)]
     for front in fronts:
         record = front.record
         seed = "" if record.seed is None else f", seed {record.seed}"
@@ -28,10 +33,25 @@ def function_lines(fronts: Sequence[Front]) -> list[str]:
     lines.append(f"values are those that the function {function.name} gave")
     if len(fronts) > 1 and len({front.reference for front in fronts}) == 1:
         lines.append(
-            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the box up to its "
-            "reference, median (quartiles)"
+            f"hypervolume: {spread_words(hypervolumes(fronts), '.4f')} of the area up to "
+            f"{corner_words(fronts[0])}, median (quartiles)"
         )
     return lines
+
+
+def _answer(fronts: Sequence[Front]) -> str:
+    """Say between which values the fronts of a function reach, the least of each objective."""
+    known = [front for front in fronts if isinstance(front, FunctionFront) and front.points]
+    if not known:
+        return "No candidate is on a front."
+    outputs = known[0].outputs
+    least = [min(float(front.objective_values[:, k].min()) for front in known)
+             for k in range(len(outputs))]  # fmt: skip
+    what = "The front reaches" if len(fronts) == 1 else f"The fronts of {len(fronts)} seeds reach"
+    values = [
+        f"{entry.label} {value:.4g} {entry.unit}".rstrip() for entry, value in zip(outputs, least)
+    ]
+    return f"{what} {' and '.join(values)}, each at its least."
 
 
 def _chosen_points(front: Front) -> list[str]:
@@ -48,12 +68,3 @@ def _chosen_points(front: Front) -> list[str]:
         f"  {name:{width}}{values_of_function(front, table[row].tolist())}"
         for name, row in rows.items()
     ]
-
-
-def values_of_function(front: FunctionFront, values: Sequence[float]) -> str:
-    """Objectives with their names and units: residual 0.001 m, energy 0.05 J."""
-    words = [
-        f"{entry.label} {value:.4g} {entry.unit}".rstrip()
-        for entry, value in zip(front.outputs, values)
-    ]
-    return ", ".join(words)

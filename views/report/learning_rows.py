@@ -18,34 +18,44 @@ def learning_sentence(learned: Learning) -> str:
     plant = learned.plan.task.plant
     left = with_unit(learned.left, plant)
     floor = with_unit(learned.floor, plant)
-    whose = (
-        "by friction, noise and what a torque does not tell"
-        if learned.by_joint
-        else ("by friction and noise")
-    )
-    if plant.has_path:
-        whose = "by noise and moves that differ"
+    whose = _of_floor(learned)
     if learned.is_done and learned.left <= learned.floor:
         return (
-            f"nothing more to learn: left {left}, within the floor {whose}, {floor}; the next move "
-            "is this one"
+            f"Nothing more to learn: the move left {left}, within the floor {whose}, {floor}; the "
+            "next move is this one."
         )
     if learned.is_done:
         return (
-            f"left {left}, of which nothing is sure enough to correct, beside a floor {whose} of "
-            f"{floor}; the next move is this one: record it several times"
+            f"The move left {left}, of which nothing is sure enough to correct, beside a floor "
+            f"{whose} of {floor}; the next move is this one: record it several times."
         )
-    share = ""
-    changed = _changed(learned)
-    if changed:
-        share = (
-            f" (by the frequency {with_unit(learned.by_frequency, plant)}: {changed}; repeatable "
-            f"{with_unit(learned.repeatable, plant)})"
-        )
-    return (
-        f"left {left}{share}; next move: at most {with_unit(learned.next_at_most, plant)}; "
-        f"floor {whose} {floor}"
-    )
+    least = with_unit(learned.next_at_most, plant)
+    return f"The move left {left}; the next move leaves at most {least}."
+
+
+def _of_floor(learned: Learning) -> str:
+    """Say whereby a floor stays, which no plan takes away."""
+    if learned.plan.task.plant.has_path:
+        return "by noise and moves that differ"
+    if learned.by_joint:
+        return "by friction, noise and what a torque does not tell"
+    return "by friction and noise"
+
+
+def _shares(learned: Learning) -> list[Row]:
+    """Return of what the swing is made, and what stays; nothing if there is nothing to correct."""
+    if learned.is_done:
+        return []
+    plant = learned.plan.task.plant
+    rows = [("floor", f"{with_unit(learned.floor, plant)}, {_of_floor(learned)}")]
+    if changed := _changed(learned):
+        by_frequency = f"{with_unit(learned.by_frequency, plant)}: {changed}"
+        rows = [
+            ("by frequency", by_frequency),
+            ("repeatable", with_unit(learned.repeatable, plant)),
+            *rows,
+        ]
+    return rows
 
 
 def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
@@ -54,6 +64,7 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
     moves = learned.plan.learned.moves if learned.plan.learned else ()
     recordings = sum(len(move.measured) for move in moves)
     rows = [
+        *_shares(learned),
         ("learned from", f"{counted(len(moves), 'move')}, {counted(recordings, 'recording')}"),
         *(
             (name, f"starts at {round(time, 4) + 0.0:.4f} s of the recording")

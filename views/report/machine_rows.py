@@ -16,10 +16,12 @@ from quietarm.views.report.words import counted, span_words
 Row = tuple[str, str]
 
 
-def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
+def machine_rows(
+    machine: Identified, given: Collection[str] = (), assumed: Collection[str] = ()
+) -> list[Row]:
     """The parameters with their intervals, then each part of the recordings.
 
-    `given` are those that the user gave.
+    `given` are those that the user gave, `assumed` those whose default the user keeps.
     """
     rows = [("plant", machine.plant.name)]
     for estimate in machine.estimates:
@@ -33,7 +35,8 @@ def machine_rows(machine: Identified, given: Collection[str] = ()) -> list[Row]:
     others = [name for name in machine.untold if name not in machine.not_identifiable]
     for words, names in {
         "as given": [name for name in others if name in given],
-        "default": [name for name in others if name not in given],
+        "assumed": [name for name in others if name in assumed and name not in given],
+        "default": [name for name in others if name not in {*given, *assumed}],
     }.items():
         if names:
             rows.append((words, ", ".join(_with_unit(machine.plant, name) for name in names)))
@@ -127,13 +130,18 @@ def nothing_predicted(plant: Plant, predictions: Sequence[Prediction]) -> ValueE
     )
 
 
-def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = ()) -> list[str]:
+def machine_notes(
+    machine: Identified,
+    at_rest: bool,
+    given: Collection[str] = (),
+    assumed: Collection[str] = (),
+) -> list[str]:
     """Return notes to read before the intervals are believed; of a joint that is taken as held.
 
-    `given` are the parameters that the user gave.
+    `given` are the parameters that the user gave, `assumed` those whose default the user keeps.
     """
     notes = list[str]()
-    untold = [name for name in machine.untold if name not in given]
+    untold = [name for name in machine.untold if name not in {*given, *assumed}]
     if untold:
         notes.append(
             "The recordings do not tell the values in the row 'default', which belong to another "
@@ -153,7 +161,7 @@ def machine_notes(machine: Identified, at_rest: bool, given: Collection[str] = (
     if len(machine.parts) == 1:
         notes.append(
             "One ring-down does not tell how much the machine varies: record several. Until then "
-            "--error takes errors of your own, as frequency=5%."
+            "--error takes errors of your own, such as frequency=5%."
         )
     notes += [
         f"The machine varies: {estimate.parameter} differs between ring-downs by more than their "

@@ -47,8 +47,8 @@ if TYPE_CHECKING:
 
 Row = tuple[str, str]
 HARD_REMEDIES: Mapping[str, str] = {
-    "acceleration": "give what the drive can do, as --acceleration-limit or --torque-limit",
-    "jerk": "give what the drive can do, as --jerk-limit",
+    "acceleration": "give what the drive can do, such as --acceleration-limit or --torque-limit",
+    "jerk": "give what the drive can do, such as --jerk-limit",
 }
 """What to do about a peak that a drive may not follow, by quantity."""
 _OF_ACCELERATION = {"acceleration": HARD_REMEDIES["acceleration"]}
@@ -166,7 +166,7 @@ def path_rows(candidate: JudgedMotion, path: RecordedPath) -> list[Row]:
         residual = candidate.perturbed(errors).residual
         words = _tip(task, residual)
         rows.append(("residual", f"{words} with {_signed(errors)}"))
-    return [*rows, ("verified", "by CVODES alone, along the spline")]
+    return [*rows, ("verified", "by one integrator alone (CVODES), along the spline")]
 
 
 def sensitivity_rows(plan: Plan) -> list[Row]:
@@ -224,8 +224,9 @@ def _verified_row(plan: Plan, verbose: bool) -> Row:
         return "verified", _SECOND + f", within {differ}" * verbose
     remedy = "smaller coefficients" if plan.profile.size else "a longer duration"
     return "not verified", (
-        f"the figures are by CVODES; {check.steps} fixed steps differ by {differ} in residual, "
-        f"where {AGREEMENT:g} of each is agreement; give {remedy}"
+        f"the two integrators, CVODES and {check.steps} fixed steps, differ by {differ} in "
+        f"residual, where {AGREEMENT:g} of each is agreement; the figures are those of CVODES; "
+        f"give {remedy}"
     )
 
 
@@ -242,8 +243,8 @@ def _full_rows(plan: Plan) -> list[Row]:
     return [
         (
             "in full",
-            f"{figures.energy:.4g} J ({share:.0e} from the energy above) and {residual} left, by "
-            f"CVODES on the whole equations, without modes and tables{remedy}",
+            f"{figures.energy:.4g} J ({100 * share:.2g} % from the energy above) and {residual} left, "
+            f"by the whole equations, without modes and tables{remedy}",
         )
     ]
 

@@ -25,8 +25,11 @@ from quietarm.metaheuristics import SearchProgress
 from quietarm.ocp import Front
 from quietarm.ocp.escapes import one_line
 from quietarm.views.report.terminal import LEAST_WIDTH, print_lines, wrapped
+from quietarm.views.report.words import corner_words
 from quietarm.views.tips import tip_scale, tip_words
 
+STILL = 1e-6
+"""Residual [m or rad] below which progress says no number."""
 PLAIN_SECONDS = 2.0
 """Seconds between plain lines, where the pieces are too many for one line each."""
 SILENT_SECONDS = 30.0
@@ -161,7 +164,8 @@ def _found(front: Front) -> str:
 
     share = final_share_of_box(front)
     return (
-        f"seed {front.record.seed} is done: hypervolume {share:.4f} in {front.record.seconds:.1f} s"
+        f"seed {front.record.seed} is done in {front.record.seconds:.1f} s: hypervolume "
+        f"{share:.4f} of the area up to {corner_words(front)}"
     )
 
 
@@ -172,6 +176,8 @@ def _figures(progress: SearchProgress) -> str:
     share = progress.infeasible / max(progress.evaluations, 1)
     residual = tip_words(progress.residual, progress.tip_unit)
     first, second = progress.names
+    if 0 <= progress.residual < STILL:
+        residual = f"below {tip_words(STILL, progress.tip_unit)}"
     best = f"{first} {residual}, {second} {progress.energy:.4g} {progress.energy_unit}"
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""

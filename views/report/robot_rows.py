@@ -24,6 +24,7 @@ WARNING = "warning"
 """The name of a row with a note on the robot."""
 _PLACES = (0.0, 0.5, 1.0)
 """Of a path, at which modes and sag are shown."""
+_PLACE_NAMES = ("at the start", "halfway", "at the end")
 _STRAIGHT = 1e-6
 """By which a spline leaves straight lines [rad or m]; less is rounding."""
 _MORE = 2
@@ -188,7 +189,7 @@ def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
     slides = [robot.description.joints[name].kind == PRISMATIC for name in robot.joints]
     numbers = modes_on(robot, path)
     rows = list[Row]()
-    for place in _places(robot, path):
+    for name, place in zip(_PLACE_NAMES, _places(robot, path)):
         seen = place.frequencies[: max(numbers) + 1 + _MORE]
         hertz = [f"{value / tau:.3g}" for value in seen]
         followed = ", ".join(hertz[number] for number in numbers)
@@ -199,7 +200,7 @@ def _path_rows(robot: Robot, path: GeometricPath) -> list[Row]:
             for x, slide in zip(place.positions, slides)
         )
         sag = 1e3 * place.sag
-        rows.append((f"at {positions}", f"modes {followed} Hz{left}, sag {sag:.3g} mm"))
+        rows.append((name, f"modes {followed} Hz{left}, sag {sag:.3g} mm, at {positions}"))
     return [*way_rows(robot, path), *rows, *_left_out_rows(robot, path, numbers)]
 
 

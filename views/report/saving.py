@@ -70,7 +70,7 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
 @contextmanager
 def as_written(figure: Figure) -> Iterator[None]:
-    """Let the block draw names as they are: no formula at a dollar, a box for what no font has.
+    """Let the block draw names as they are: no formula at a dollar, a frame for unknown letters.
 
     What is not printed, as marks that turn the direction of writing round, is a question mark.
     """

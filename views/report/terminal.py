@@ -107,8 +107,15 @@ def show_facts(console: Console, rows: Sequence[tuple[str, str]]) -> None:
     console.print(table)
 
 
+EXPLANATION = "## How to read it\n"
+"""The heading of what a report explains, which is in its files alone."""
+EXPLAINED = (
+    "Less is better in hypervolume gap, IGD+ and additive epsilon; --output FOLDER explains them.\n"
+)
+
+
 def show(console: Console, report: Report) -> None:
-    """Print a report without its pictures: the answer, then the page.
+    """Print a report without its pictures: the answer, then the page without how to read it.
 
     A table that is wider than the console becomes several, one below the other.
     """
@@ -116,7 +123,8 @@ def show(console: Console, report: Report) -> None:
 
     if report.answer:
         print_lines(console, *in_clauses(report.answer, max(console.width, LEAST_WIDTH)))
-    text = printable(report.markdown(with_answer=False))
+    text, explained, _ = printable(report.markdown(with_answer=False)).partition(EXPLANATION)
+    text += EXPLAINED if explained else ""
     lines = [line for line in text.splitlines() if not line.startswith("![")]
     console.print(Markdown("\n".join(_narrowed(lines, console.width))))
 

@@ -12,7 +12,7 @@ _JOULE_A_MILLISECOND = 1e3
 
 
 def time_front_lines(front: TimeFront) -> list[str]:
-    """A front of time and energy, the answer first: where a joule is worth a millisecond."""
+    """A front of time and energy, the answer first: what its ends take."""
     band = tip_words(front.task.band or 0.0, "m")
     prices = [f"{price / 1e3:.3g} J" for price in front.prices] + ["-"]
     rows = [
@@ -20,6 +20,7 @@ def time_front_lines(front: TimeFront) -> list[str]:
         for point, price in zip(front.points, prices)
     ]
     return [
+        _answer(front),
         _worth(front),
         moved(front.task),
         f"{front.record.method}: {counted(len(front.points), 'point')} in "
@@ -31,6 +32,17 @@ def time_front_lines(front: TimeFront) -> list[str]:
         ),
         *(f"no plan in {failure}" for failure in front.failures),
     ]
+
+
+def _answer(front: TimeFront) -> str:
+    """Say what the fastest and the cheapest move take."""
+    if not front.points:
+        return "No duration has a plan."
+    ends = [
+        f"{point.energy:.3g} J to act after {point.acts_after:.3g} s"
+        for point in (front.points[0], front.points[-1])
+    ]
+    return f"From {' to '.join(dict.fromkeys(ends))}."
 
 
 def _worth(front: TimeFront) -> str:

@@ -36,7 +36,7 @@ def timed_rows(answer: TimedAnswer) -> list[Row]:
     rows.append(("swings on", ", ".join(swings[:_SHOWN])))
     rows.append(("what rings", answer.diagnosis))
     rows += [(WARNING, note.words) for note in robot.notes]
-    return [*rows, ("verified", "by CVODES alone, on the whole equations")]
+    return [*rows, ("verified", "by one integrator alone (CVODES), on the whole equations")]
 
 
 _SHOWN = 4

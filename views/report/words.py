@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from quietarm.models import Plant
 from quietarm.models.dimensions import WAY
-from quietarm.ocp import ModalState, PointToPoint
+from quietarm.ocp import Front, ModalState, PointToPoint
 from quietarm.ocp.energy import ABSOLUTE_POWER
+from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.limits import RESIDUAL
-from quietarm.ocp.objectives import Objective
+from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.rest import is_at_rest, rest_of
 from quietarm.views.tips import tip_scale, tip_words
 
@@ -41,6 +42,7 @@ def spread_words(spread: Spread, form: str, unit: str = "") -> str:
     if spread.seeds == 1:
         return f"{middle}{unit}"
     some = f", {spread.count} of {spread.seeds} seeds" if spread.count < spread.seeds else ""
+    unit = unit if isfinite(spread.median) else ""
     return f"{middle}{unit} ({low} to {high}{some})"
 
 
@@ -163,6 +165,22 @@ def values_words(objectives: Sequence[Objective], values: Iterable[float]) -> st
         for objective, value in zip(objectives, values)
     ]
     return f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def corner_words(front: Front) -> str:
+    """Return the corner up to which a front's hypervolume counts: 77.1 mm and 0.182 J."""
+    if isinstance(front, FunctionFront):
+        return values_of_function(front, front.reference)
+    return values_words(objectives_on(front.task.plant, front.objectives), front.reference)
+
+
+def values_of_function(front: FunctionFront, values: Iterable[float]) -> str:
+    """Objectives with their names and units: residual 0.001 m, energy 0.05 J."""
+    words = [
+        f"{entry.label} {value:.4g} {entry.unit}".rstrip()
+        for entry, value in zip(front.outputs, values)
+    ]
+    return ", ".join(words)
 
 
 def limit_words(task: PointToPoint) -> list[str]:

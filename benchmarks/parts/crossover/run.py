@@ -45,7 +45,7 @@ def part_of(text: str) -> tuple[int, int]:
     """A part as it is typed, such as 2/4; ValueError where it is none."""
     number, _, count = text.partition("/")
     if not (number.isdigit() and count.isdigit() and 1 <= int(number) <= int(count)):
-        raise ValueError(f"part is {text!r}; give a number of how many, as 2/4")
+        raise ValueError(f"part is {text!r}; give a number of how many, such as 2/4")
     return int(number), int(count)
 
 

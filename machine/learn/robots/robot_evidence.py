@@ -147,7 +147,7 @@ def refuse_delay(delay: float | None) -> None:
 def _checked(plan: Plan, recordings: Any) -> list[RobotRecording]:
     """The recordings of a robot, with as many columns as it has joints, or its tip axes."""
     plant = plan.task.plant
-    checked = several("recordings", recordings, "recordings, as [RobotRecording(time, ...)]")
+    checked = several("recordings", recordings, "recordings, such as [RobotRecording(time, ...)]")
     if not checked:
         raise ValueError("no recording is given; give one")
     for recording in checked:

@@ -117,7 +117,7 @@ class Beam:
             if size is not None and size > self.length:
                 raise ValueError(
                     f"{name} of the beam is {size:g} m, and its length {self.length:g} m; is it in "
-                    f"mm, as {size:g}mm?"
+                    f"mm, such as {size:g}mm?"
                 )
         by_section = (*section, self.youngs_modulus)
         if self.bending_stiffness is None:
@@ -145,7 +145,7 @@ class Beam:
         damping = not_negative("damping of the beam", self.damping)
         if damping >= 1:
             raise ValueError(
-                f"damping of the beam is {100 * damping:g} %; give a ratio below 1, as 0.005"
+                f"damping of the beam is {100 * damping:g} %; give a ratio below 1, such as 0.005"
             )
         object.__setattr__(self, "damping", damping)
         if self.hinges not in (EXACT, MIDDLE):
@@ -162,7 +162,7 @@ class Beam:
         if np.linalg.norm(self.direction) < _LEAST_DIRECTION:
             raise ValueError(
                 f"direction of the beam is {list(self.direction)}, none; give one in the frame of "
-                "the link, as [1, 0, 0]"
+                "the link, such as [1, 0, 0]"
             )
         object.__setattr__(self, "roll", finite("roll of the beam", self.roll, "rad"))
 
@@ -335,7 +335,7 @@ def _vector(name: str, values: Any, unit: str) -> tuple[float, float, float]:
     words = f"{name} of the beam"
     numbers = [] if isinstance(values, str) or np.ndim(values) != 1 else list(values)
     if len(numbers) != 3:
-        raise ValueError(f"{words} is {quoted(values)}; give three numbers, as [1, 0, 0]")
+        raise ValueError(f"{words} is {quoted(values)}; give three numbers, such as [1, 0, 0]")
     x, y, z = (finite(words, value, unit, _MOST) for value in numbers)
     return (x, y, z)
 

@@ -91,7 +91,7 @@ class GeometricPath:
         When it is no path: not from 0 to 1, of length 0, or with a corner.
     """
 
-    example: ClassVar[str] = "a path, as GeometricPath.line(q0, q1)"
+    example: ClassVar[str] = "a path, such as GeometricPath.line(q0, q1)"
 
     knots: tuple[float, ...]
     coefficients: tuple[tuple[tuple[float, ...], ...], ...]
@@ -428,7 +428,7 @@ class GeometricPath:
             raise ValueError(
                 f"{len(corners)} of its points are needed to stay within {tolerance:.3g} rad "
                 f"(or m) of the lines between all; a path has {MOST_WAYPOINTS // 2} at most: "
-                "give a larger tolerance, as --path-tolerance 0.5deg, or a part of the path"
+                "give a larger tolerance, such as --path-tolerance 0.5deg, or a part of the path"
             )
         _check_turns(corners)
         left_out = np.linalg.norm(points - nearest_on_lines(points, corners), axis=1).max()
@@ -681,9 +681,16 @@ def _rows(values: ArrayLike, most: int = MOST_WAYPOINTS) -> Array:
         rows = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         rows = np.zeros(0)
-    if rows.ndim != 2 or len(rows) < 2 or not rows.size or not np.all(np.isfinite(rows)):
+    if rows.ndim != 2 or len(rows) < 2 or not rows.size:
         raise ValueError(
             "the waypoints are no table; give two rows or more, with a number for each joint"
+        )
+    unusable = np.argwhere(~np.isfinite(rows))
+    if len(unusable):
+        row, column = unusable[0]
+        raise ValueError(
+            f"waypoint {row + 1} has {rows[row, column]:g} for its joint {column + 1}; give a "
+            "finite number, or leave the waypoint out"
         )
     if len(rows) > most:
         raise ValueError(

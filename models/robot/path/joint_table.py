@@ -61,7 +61,7 @@ class JointTable:
         if not 1 <= first < last <= len(self.positions):
             raise ValueError(
                 f"waypoints {first}:{last} are none of {len(self.positions)}; give the numbers of "
-                "the first and the last, as 2:4"
+                "the first and the last, such as 2:4"
             )
         return self._of_rows(np.arange(first - 1, last))
 

@@ -319,7 +319,7 @@ def _size(joint: ElementTree.Element, tag: str, entry: str, what: str) -> float:
 def _mimic(element: ElementTree.Element, what: str) -> Mimic:
     leader = element.get("joint")
     if not leader:
-        raise ValueError(f"{what} mimics no joint; name one, as <mimic joint='...'/>")
+        raise ValueError(f"{what} mimics no joint; name one, such as <mimic joint='...'/>")
     multiplier = _number(element, "multiplier", f"multiplier of {what}", 1.0, _LARGEST)
     offset = _number(element, "offset", f"offset of {what}", 0.0, _LARGEST)
     return Mimic(leader, multiplier, offset)

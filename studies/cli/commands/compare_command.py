@@ -41,15 +41,16 @@ _OF_FLOOR = [param.name or "" for param in SOLVER]
 
 @command(
     click.Argument(["files"], nargs=-1, type=INPUT, metavar="FILE..."),
-    option("--baselines", type=NAMES, help="Plans: add for the same move, as zvd,ruckig; or all."),
+    option("--baselines", type=NAMES, help="Plans: add for the same move, such as zvd,ruckig; or "
+                                           "all."),
     ERROR,
     *BAND_OPTIONS,
     option("--durations", type=Named("durations", DURATIONS), help="Plans: how long baselines "
            "take, the shortest time of each within the limits, as long as the plan, or a row of "
            "each. [default: own with --band, else plan]"),
     option("--energy", type=Parsed("energy", parse_energy), help="Plans: what counts as energy "
-           "here, as positive+copper:30 with the windings' heat by the motor constant. [default: "
-           "the plan's]"),
+           "here, such as positive+copper:30 with the windings' heat by the motor constant. "
+           "[default: the plan's]"),
     option("--samples", default=SAMPLES, help="Plans: random plants for the percentiles."),
     option("--reference", type=INPUT,
            help="Fronts: measure IGD+ and additive epsilon against this one."),

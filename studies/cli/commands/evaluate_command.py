@@ -60,8 +60,8 @@ def _coefficients(text: str) -> list[float] | Path:
 @command(
     *TASK, *profile_options(*SHAPERS, words="; or the plain cycloid through an input shaper"),
     option("--coefficients", type=Parsed("numbers", _coefficients), metavar="NUMBERS|FILE",
-           help="Those of the profile, as --coefficients=-0.0019,-0.14; or a file with a row a "
-           "motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
+           help="Those of the profile, such as --coefficients=-0.0019,-0.14; or a file with a row "
+           "a motion (.csv, .txt, .npy, .npz, .mat), which gives a front."),
     option("--path", type=INPUT, help="A CSV file with columns such as time_s and angle_deg, in "
            "place of start, target and duration; of a robot its waypoints."),
     PATH_TOLERANCE,

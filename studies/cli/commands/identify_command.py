@@ -38,12 +38,12 @@ from quietarm.views.report.machine_rows import (
     SET,
     *RECORDED,
     option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
-           help="Begin and end of a ring-down [s], as 3.2:7.3. [default: they are found]"),
-    option("--free", type=NAMES, help="The parameters that are sought, as omega,zeta. [default: "
-           "frequencies and dampings, and with a torque what shows in it alone]"),
+           help="Begin and end of a ring-down [s], such as 3.2:7.3. [default: they are found]"),
+    option("--free", type=NAMES, help="The parameters that are sought, such as omega,zeta. "
+           "[default: frequencies and dampings, and with a torque what shows in it alone]"),
     option("--assume", type=NAMES, help="Parameters that keep the plant's own default in the "
-           "machine's file, as hub_inertia,friction, or all: neither the recordings nor --set tell "
-           "them."),
+           "machine's file, such as hub_inertia,friction, or all: neither the recordings nor "
+           "--set tell them."),
     option("--recorded", type=click.Choice(get_args(Recorded)), help="How the joint was while it "
            "was recorded: held, or moving under its servo. A --drive needs it. [default: held if "
            "--angle is given, else not known]"),
@@ -76,7 +76,8 @@ def identify(given: Given) -> None:
     if given.check:
         return _check(given, plant, recordings, notes)
     known = dict(given.parameters).keys()
-    told_otherwise = {*known, *_assumed(given.assume, plant)}
+    assumed = _assumed(given.assume, plant)
+    told_otherwise = {*known, *assumed}
     if isinstance(kind, identification.Identified):
         told_otherwise |= plant.measured.keys()
     saves = any(ending_of(path) != PICTURE for path in given.output)
@@ -99,8 +100,8 @@ def identify(given: Given) -> None:
     return finish(
         files,
         machine_answer(machine),
-        machine_rows(machine, known),
-        *machine_notes(machine, machine.recorded is None, known),
+        machine_rows(machine, known, assumed),
+        *machine_notes(machine, machine.recorded is None, known, assumed),
         *notes,
     )
 

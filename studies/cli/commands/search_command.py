@@ -80,12 +80,12 @@ _BY_GRADIENT = {
     method_option(lambda: [*PRESETS], _BY_GRADIENT, "nsga2",
                   "The metaheuristic; quietarm list methods has them."),
     option("--function", type=Parsed("FILE.py:NAME", FunctionOfFile.read), metavar="FILE.py:NAME",
-           help="In place of PLANT: your own function of candidates, as a simulator. The file is "
-           "run: give one that you trust."),
+           help="In place of PLANT: your own function of candidates, such as a simulator. The "
+           "file is run: give one that you trust."),
     *profile_options(), BOUND,
     option("--lower", type=Parsed("numbers", parse_sides), metavar="A,B,...",
-           help="Of --function: the least of each coefficient, as --lower=-1,-1,0. [default: its "
-           "attribute `lower`]"),
+           help="Of --function: the least of each coefficient, such as --lower=-1,-1,0. [default: "
+           "its attribute `lower`]"),
     option("--upper", type=Parsed("numbers", parse_sides), metavar="A,B,...",
            help="The same for the largest, or one number for all."),
     option("--population", type=int, help="Individuals, or particles in a swarm."),
@@ -93,7 +93,8 @@ _BY_GRADIENT = {
     option("--evaluations", type=int, help="Candidates in all, in place of generations."),
     OBJECTIVES, *NOISE, METHOD_SETTING, SEED,
     option("--runs", default=1,
-           help="Seeds, from --seed on; each has a file, as front-seed0.json, once it is done."),
+           help="Seeds, from --seed on; each has a file, such as front-seed0.json, once it is "
+                "done."),
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
     WORKERS, YES,
@@ -219,12 +220,12 @@ def _kept_words(
 
 
 def _move(given: Given) -> _Asked:
-    """The move that was typed, with its profile and its box."""
+    """The move that was typed, with its profile and its bounds."""
     given.refuse(["lower", "upper"], "is for --function, and this is a move with a --bound")
     task = given.read_task()
     profile = given.read_profile(task)
     if given.bound is None and profile.default_bound is None:
-        papers = ", ".join(f"{box:g} for {plant}" for plant, box in PAPER_BOX.items())
+        papers = ", ".join(f"{bound:g} for {plant}" for plant, bound in PAPER_BOX.items())
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )

@@ -279,5 +279,5 @@ def test_recordings_that_do_not_fit_the_robot_are_refused_in_a_line(plant):
         0, 1, recording.torques.shape))  # fmt: skip
     with pytest.raises(ValueError, match="it is of another move"):
         qa.learn(plan, [still])
-    with pytest.raises(TypeError, match="a recording of a robot, as RobotRecording"):
+    with pytest.raises(TypeError, match="a recording of a robot, such as RobotRecording"):
         qa.learn(plan, [qa.Recording(recording.time, tip=recording.torques)])

@@ -82,6 +82,7 @@ def test_a_front_of_a_function_is_saved_loaded_compared_and_written_as_a_table(t
     assert drawn.axes[0].get_xlabel() == "residual [m]"
     again = qa.search(parabolas, **BOX, evaluations=50, population=10, start=loaded)
     assert again.residuals.min() <= loaded.residuals.min()
+    assert again.reference == loaded.reference  # so that their hypervolumes are of one area
 
 
 def test_what_needs_a_task_says_so_in_one_line(tmp_path):

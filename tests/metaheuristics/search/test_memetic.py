@@ -1,4 +1,4 @@
-"""Searches that use derivatives: the memetic one, and SLSQP with differences."""
+"""Searches that use derivatives: the memetic one, and finite-difference SLSQP."""
 
 import numpy as np
 import pytest

@@ -189,9 +189,13 @@ def test_of_a_huge_array_only_the_budget_is_evaluated():
 
 def test_what_is_no_method_is_refused_before_anything_runs():
     for value in (3, None, [called]):
-        with pytest.raises(ValueError, match=r"^method is .*; give a name, as 'nsga2', a function"):
+        with pytest.raises(
+            ValueError,
+            match=r"^method is .*; give a name, such as 'nsga2', a "
+            r"function",
+        ):
             Job(NAME, value, 0, BUDGET)
-    with pytest.raises(ValueError, match=r"give an object, as Asked\(\), not its class"):
+    with pytest.raises(ValueError, match=r"give an object, such as Asked\(\), not its class"):
         Job(NAME, Asked, 0, BUDGET)
 
 

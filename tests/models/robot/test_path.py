@@ -79,6 +79,7 @@ def test_a_path_goes_on_smoothly_beyond_its_ends(path):
     (lambda: qa.GeometricPath.through([START, START]), "a length of 0 and ends where it begins"),
     (lambda: qa.GeometricPath.through([START, END, START]), "turns back at waypoint 2, a corner"),
     (lambda: qa.GeometricPath.through([START]), "give two rows or more"),
+    (lambda: qa.GeometricPath.through([START, [np.nan] * 6]), "waypoint 2 has nan for its joint 1"),
     (lambda: qa.GeometricPath.through([START, END], at=[0.0, 0.9]), "rising from 0 to 1"),
     (lambda: qa.GeometricPath.line(START, "home"), "end of the path is 'home'; give a finite"),
     (

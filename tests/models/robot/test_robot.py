@@ -152,7 +152,7 @@ def test_a_robot_is_the_same_in_another_process():
     ("base: {stiffness: [1, 2, 3, 4]}\n", "stiffness of the base has 4 numbers"),
     ("limits: none.yaml\n", "none.yaml cannot be read: no such file"),
     ("limits: 3\n", "give a joint_limits.yaml of MoveIt, or urdf"),
-    ("measured: {frequency: 3, at: [0, 0, 0, 0, 0, 0]}\n", "say its unit, as 3Hz"),
+    ("measured: {frequency: 3, at: [0, 0, 0, 0, 0, 0]}\n", "say its unit, such as 3Hz"),
     ("measured: {frequency: 900Hz, at: [0, 0, 0, 0, 0, 0]}\n", "measured frequency is 900 Hz"),
     ("measured: {frequency: 3Hz, at: [0, 0]}\n", "measured has 2 positions and the robot 6 joints"),
     ("gravity: [0, 9.81]\n", "gravity has 2 numbers; give three"),

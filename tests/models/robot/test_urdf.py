@@ -231,7 +231,7 @@ def test_links_in_millimetres_are_asked_for():
 @pytest.mark.parametrize("name", ["width", "height"])
 def test_a_bar_wider_than_long_is_asked_for_millimetres(name):
     sizes = {"width": 0.005, "height": 0.005, name: 5.0}
-    words = rf"{name} of the beam is 5 m, and its length 0\.5 m; is it in mm, as 5mm\?"
+    words = rf"{name} of the beam is 5 m, and its length 0\.5 m; is it in mm, such as 5mm\?"
     with pytest.raises(ValueError, match=words):
         qa.Beam("lower", 0.5, youngs_modulus=70e9, density=2700.0, **sizes)
 

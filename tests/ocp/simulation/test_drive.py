@@ -238,7 +238,7 @@ def test_a_drive_that_does_not_fit_its_plant_is_refused():
         ValueError, match=r"rotor is 80 kg of 67\.7 kg that move without what swings"
     ):
         qa.PointToPoint(gantry(drive=replace(GANTRY, rotor=80)), 0.8, 1.0)
-    with pytest.raises(TypeError, match="drive is 40; give a drive, as Drive"):
+    with pytest.raises(TypeError, match="drive is 40; give a drive, such as Drive"):
         qa.PointToPoint(LinearAxis(drive=40), 0.8, 1.0)
     slow = replace(GANTRY, dead_time=0.02)
     with pytest.raises(qa.ocp.SolverFailedError, match="the servo does not hold the plant"):

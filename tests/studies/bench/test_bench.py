@@ -263,5 +263,5 @@ def test_a_scheduler_without_an_address_is_told_what_to_give(call, tmp_path):
         line = ["bench", NAME, "--output", str(tmp_path / "out"), "--scheduler", address]
         code, _, err = call(line)
         assert (code, err.count("\n")) == (2, 1)
-        assert "the scheduler's address is empty; give one, as tcp://host:8786" in err
+        assert "the scheduler's address is empty; give one, such as tcp://host:8786" in err
     assert not (tmp_path / "out").exists()

@@ -69,9 +69,10 @@ def test_fronts_and_what_is_compared_begin_with_who_takes_or_leaves_least(done, 
 
 def test_files_name_their_answer_and_a_machine_its_frequency(done, refused, files):
     assert done("export plan.json --output move.csv --quiet").startswith("wrote move.csv\n")
-    first = checked(
-        done(f"identify {GANTRY} linear-axis --tip tool_mm {KNOWN} --quiet"), "The mach"
-    )
+    out = done(f"identify {GANTRY} linear-axis --tip tool_mm {KNOWN} --quiet")
+    first = checked(out, "The mach")
+    assert "assumed           share1 1" in out
+    assert "default" not in out
     assert first == "The machine swings at 4.484 Hz (+-0.001 %), by 1 ring-down."
     said = refused(f"identify {GANTRY} linear-axis")
     assert "its columns, by name or by number from 0, are time_s, tool_mm" in said

@@ -176,11 +176,11 @@ def test_a_setting_of_a_bench_is_a_share_in_per_cent_as_well(done, folder, typed
 @pytest.mark.parametrize(
     ("name", "rows"),
     [
-        ("epsilon", ["points 50: points of the front", "solver_boldness 0.5: How far"]),
-        ("EPSILON:sqp", ["solver_second_order exact: What curvature is."]),
-        ("multistart:ipopt", ["starts 100: random starts", "solver_iterations 500: Most"]),
-        ("nsga2+polish", ["crossover 0.9: share", "solver_boldness 0.5: How far"]),
-        ("memetic", ["gradient_every 10: generations", "solver_boldness 0.5: How far"]),
+        ("epsilon", ["points 50: points of the front", "solver_boldness 0.5: how far"]),
+        ("EPSILON:sqp", ["solver_second_order exact: what curvature is"]),
+        ("multistart:ipopt", ["starts 100: random starts", "solver_iterations 500: most"]),
+        ("nsga2+polish", ["crossover 0.9: share", "solver_boldness 0.5: how far"]),
+        ("memetic", ["gradient_every 10: generations", "solver_boldness 0.5: how far"]),
     ],
 )
 def test_the_settings_of_a_method_are_listed_with_its_solvers_options(done, name, rows):

@@ -122,7 +122,7 @@ def test_the_answer_names_who_acts_first_and_the_best_of_the_others(judged):
     best = min(judged, key=lambda one: one.acting.latest.after)
     assert f" {best.name} may act first, after " in text
     assert ", within 0.1 mm for frequency errors up to 5 %" in text
-    assert "of the plans cycloid plan is first" in text
+    assert "the first of the plans is cycloid plan, " in text
     table = report.tables["motions"].set_index("motion")
     columns = ["acts after [s] at 5 %", "acts after [s] within the errors", "residual [mm] at 5 %"]
     assert set(columns) <= set(table.columns)

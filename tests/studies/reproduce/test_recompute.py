@@ -69,7 +69,7 @@ def test_every_system_stands_on_every_condition_with_its_worst_case(reproduction
         found = {one.name: one for one in systems}
         assert list(found)[:5] == ["cycloid", "zv", "zvd", "ei", "paper"]
         assert list(found)[-4:] == [
-            "gradient, in the box",
+            "gradient, within the bounds",
             "gradient",
             "robust plan",
             "free motion",

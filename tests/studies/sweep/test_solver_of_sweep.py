@@ -54,5 +54,5 @@ def test_cells_are_planned_by_the_solver_of_the_sweep(monkeypatch):
 
 
 def test_a_sweep_takes_no_name_of_a_solver(tmp_path):
-    with pytest.raises(TypeError, match=r"give an object, as Ipopt\(\)"):
+    with pytest.raises(TypeError, match=r"give an object, such as Ipopt\(\)"):
         qa.sweep(GRID.task, axes={"target": [0.4]}, path=tmp_path / "x.zarr", solver="ipopt")

@@ -136,6 +136,9 @@ def test_from_the_start_the_motion_is_beside_the_front_and_a_curve_is_kept(opene
         pytest.approx(0.0911, abs=5e-5),
     )
     assert "this is the plain cycloid itself" in page.inner_text("#sentence")
+    # the front of the first move is there before anything is set
+    becomes(page, "state.front !== null")
+    assert page.evaluate("isByHand() && state.front.points.length > 10")
     press(page, "Keep curve")
     slider(page, "a2").press("ArrowLeft")
     has(page, "coefficients", "0, -0.0001, 0")

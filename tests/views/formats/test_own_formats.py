@@ -23,7 +23,7 @@ def define(**entries):
 @pytest.mark.parametrize(
     ("entries", "told"),
     [
-        ({"endings": None}, r"format Mine has no endings; give one, as endings = \('\.nc',\)"),
+        ({"endings": None}, r"format Mine has no endings; give one, such as endings = \('\.nc',\)"),
         ({"meaning": None}, "format Mine has no meaning"),
         ({"content": None}, r"format Mine writes nothing; define content\(self, plan, ...\)"),
         ({"endings": ".nc"}, r"endings of Mine are '\.nc'; give them as \('\.nc',\)"),

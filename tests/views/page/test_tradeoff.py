@@ -234,7 +234,9 @@ def test_of_an_uncertain_task_it_says_whose_residual_it_is(front, task):
     (move,) = trade_off(plan).moves
     assert move["points"][0]["residual"] == plan.residual > 1e-3
     scenarios = len(plan.task.scenarios)
-    assert move["note"].startswith(f"F1 is the worst of {scenarios} plants within the errors")
+    assert move["note"].startswith(
+        f"The residual is the worst of {scenarios} plants within the errors"
+    )
     assert not move["swings_about_rest"]
 
 

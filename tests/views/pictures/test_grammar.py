@@ -167,7 +167,7 @@ def test_titles_stand_left_and_axes_have_units(figures):
                 ticks = "".join(label.get_text() for label in ax.get_xticklabels())
                 below = ax.get_xlabel() or (ticks if "[" in ticks else "[s]")
                 heads = [ax.get_ylabel() + ax.get_title(loc="left"), below]
-                counted = ("ring-down", "candidates evaluated", "seed (x:", "share of the box")
+                counted = ("ring-down", "candidates evaluated", "seed (x:", "share of the area")
                 for words in heads:
                     assert "[" in words or any(word in words for word in counted), (name, words)
 

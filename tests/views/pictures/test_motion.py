@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import re
 from typing import NamedTuple
 
 import numpy as np
@@ -89,15 +88,10 @@ def test_a_picture_says_what_its_motions_take_and_leave_and_how_that_is_verified
         f"This plan takes {plan.energy:.3g} J and arrives at rest; the plain cycloid takes "
         f"{cycloid.energy:.3g} J and leaves {1e3 * cycloid.residual:.3g} mm"
     )
-    assert re.fullmatch(
-        r"single-link, 0 to 30 deg in 0\.8 s; verified by CVODES, within \S+ of the energy", facts
-    )
+    assert facts == "single-link, 0 to 30 deg in 0.8 s; checked by a second integrator"
     several = [Line(cycloid, f"motion {i}") for i in range(4)]
-    assert (
-        motion_figure(several)
-        .get_suptitle()
-        .startswith(f"4 motions take {cycloid.energy:.3g} to {cycloid.energy:.3g} J")
-    )
+    best = f"Motion 0 leaves 77.1 mm for {cycloid.energy:.3g} J, the stillest and cheapest of 4"
+    assert motion_figure(several).get_suptitle().startswith(best)
     robust = dataclasses.replace(task, uncertainty=Uncertainty({"frequency": 0.05}))
     assert "in the worst case" not in head
     assert "with frequency ±5 %" in motion_figure(

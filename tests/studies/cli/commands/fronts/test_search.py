@@ -71,10 +71,10 @@ def test_several_seeds_are_written_to_a_file_each_with_their_spread(call):
     assert fronts == [directly(seed=seed) for seed in (4, 5, 6)]
     assert out.splitlines()[-4:] == [*(f"wrote f-seed{s}.json" for s in (4, 5, 6)), "wrote f.png"]
     low, middle, high = sorted(map(final_share_of_box, fronts))
-    assert f"hypervolume: {middle:.4f} ({low:.4f} to {high:.4f}) of the box" in out
+    assert f"hypervolume: {middle:.4f} ({low:.4f} to {high:.4f}) of the area" in out
     for seed in (4, 5, 6):
         assert f"\nvepso, seed {seed}: " in f"\n{out}"
-        assert f"seed {seed} is done: hypervolume " in err
+        assert f"seed {seed} is done in " in err
     assert not Path("f.json").exists()
 
 

@@ -127,7 +127,7 @@ def test_a_residual_in_rad_has_its_window(done):
     assert header == "residual_rad,energy_J,a_1,a_2,a_3,residual_window_s"
     assert {row.split(",")[-1] for row in rows} == {"3.0"}
     front = Front.load("f.json")
-    label = "residual F1 within 3 s [rad]"
+    label = "residual within 3 s [rad]"
     assert front_figure([front]).axes[0].get_xlabel() == label
     assert label in front._repr_html_()
     motions = compare_plans({"mine": plan})

@@ -42,6 +42,24 @@ def test_an_answer_is_judged_on_its_drive_and_says_what_is_unknown(call):
 
 
 @pytest.mark.slow
+def test_a_drive_that_no_machine_has_is_warned_of_beside_the_answer(call):
+    drive = "--drive position_loop=600/s,speed_loop=40Hz,recorded=held,rotor=2kg,compliance=6N/m"
+    evaluated = AXIS.replace("plan", "evaluate").replace("--terms 2", "--coefficients 0,0")
+    code, out, _ = call(f"{evaluated} {drive}")
+    assert code == 0
+    first, *rows = " ".join(out.split()).split(" move linear-axis")
+    assert "n its drive it leaves" in first
+    # 2 pi * 40 Hz
+    assert "position loop of 600/s is faster than the speed loop of 40 Hz, which is 251" in rows[0]
+    assert re.search(
+        r"gives by \S+ m at the plan's peak, and its way is 0.25 m; check the", rows[0]
+    )
+    _, out, _ = call(f"{evaluated} {DRIVE}")
+    assert "warning the position" not in " ".join(out.split())
+    assert "gives by" not in out
+
+
+@pytest.mark.slow
 def test_without_loops_there_is_no_simulation(call):
     _, out, _ = call(f"{AXIS} --drive friction_load=5N")
     assert "not simulated: give position_loop and speed_loop" in out

@@ -67,7 +67,7 @@ def test_another_tip_mass_keeps_the_measured_frequency_and_says_so(push, call, r
     for name, value in {"omega": "3Hz", "tip_mass": "0.1", "length": "0.5"}.items():
         said = refused(f"{line} --set {name}={value} --error measured")
         assert f"the measured intervals are of the machine with {name} " in said
-        assert "or state errors of your own, as frequency=5%" in said
+        assert "or state errors of your own, such as frequency=5%" in said
     said = refused("sweep arm.json --quiet --target 1 --duration 1 --set omega=3Hz,3.1Hz "
                    "--error measured --output m.zarr")  # fmt: skip
     assert "with omega" in said

@@ -49,12 +49,12 @@ def test_the_first_line_says_what_was_left_and_the_next_plan_leaves_less(done, f
     first = " ".join(out.split("learned from")[0].split())
     number = r"([\d.]+)"
     words = re.fullmatch(
-        rf"left {number} mm \(by the frequency {number} mm: {number} Hz during the move, model "
-        rf"5 Hz; repeatable {number} mm\); next move: at most {number} mm; floor by friction and "
-        rf"noise {number} mm",
+        rf"The move left {number} mm; the next move leaves at most {number} mm\. by frequency "
+        rf"{number} mm: {number} Hz during the move, model 5 Hz repeatable {number} mm floor "
+        rf"{number} mm, by friction and noise",
         first,
     )
-    left, by_frequency, hertz, repeatable, _, floor = map(float, words.groups())
+    left, _, by_frequency, hertz, repeatable, floor = map(float, words.groups())
     # 5.4 Hz, as the axis was simulated
     assert hertz == pytest.approx(5.4, rel=2e-3)
     assert by_frequency == pytest.approx(left, rel=0.05)

@@ -37,7 +37,7 @@ def plan(folder):
 def test_the_springs_are_learned_from_a_log(done, refused, plan, folder):
     line = "learn plan.json log.csv --torque tau_ext --scale torque=-1 --angle q"
     out = " ".join(done(f"{line} --output next.json --dearer 10%").split())
-    left = float(re.match(r"left ([\d.]+) mm", out)[1])
+    left = float(re.match(r"The move left ([\d.]+) mm", out)[1])
     assert left == pytest.approx(1e3 * plan.residual, rel=0.1)
     assert re.search(r"springs 1\.2(?:00\d*)? times as stiff, 5\.367 Hz, model 4\.899 Hz", out)
     assert "moves of robots differ by 1.8 %" in out

@@ -126,7 +126,7 @@ def test_the_force_of_a_linear_drive_falls_with_speed(done, typed):
     ("limits", "warned"),
     [
         # measured: the acceleration changes by its peak in 1.5 and in 20 ms
-        ("--acceleration-limit 40", "in 1.5 ms; give what the drive can do, as --jerk-limit"),
+        ("--acceleration-limit 40", "in 1.5 ms; give what the drive can do, such as --jerk-limit"),
         ("--acceleration-limit 40 --jerk-limit 2000", ""),
         ("--terms 3", ""),  # in 30 ms
     ],

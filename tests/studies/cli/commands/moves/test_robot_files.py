@@ -93,7 +93,7 @@ def test_waypoints_are_blended_and_taken_in_part(folder, call, refused):
     assert out.count("\npath") == 1
     assert "waypoint 3" not in out
     for words, remedy in (
-        ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, as 2:4"),
+        ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, such as 2:4"),
         ("--waypoints 3:9", "path points.csv: waypoints 3:9 are none of 4; give the numbers of"),
         ("--blend 5mm --path-tolerance 1deg", "--path-tolerance is for a spline, and --blend"),
     ):
