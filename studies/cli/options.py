@@ -216,7 +216,7 @@ TASK = (
     SET,
     DRIVE,
     *ENDS,
-    option("--duration", metavar="TIME", help="Travelling time; quietarm plan also takes "
+    option("--duration", metavar="TIME", help="Duration of the move; quietarm plan also takes "
            "`fastest`, the shortest within the limits."),
     *LIMITS,
     option("--torque-speed", metavar="TORQUE@SPEED", help="Torque limit by speed, as points: "

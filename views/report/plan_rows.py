@@ -243,7 +243,7 @@ def _full_rows(plan: Plan) -> list[Row]:
     return [
         (
             "in full",
-            f"{figures.energy:.4g} J ({100 * share:.2g} % from the energy above) and {residual} left, "
+            f"{figures.energy:.4g} J ({100 * share:.2g} % from the above) and {residual} left, "
             f"by the whole equations, without modes and tables{remedy}",
         )
     ]
