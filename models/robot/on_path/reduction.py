@@ -161,7 +161,7 @@ class Reduction:
         return Compiled(lambda: ca.Function("tip_slopes", [x], [slopes], {"cse": True}))
 
     def _tip_rows(self, q: Array, p: Array) -> Array:
-        """Displacements of the tip by the modes, shape (directions, modes), at one place or many."""
+        """Displacements of the tip by the modes, (directions, modes) at each of the places."""
         at = np.concatenate([q, p], axis=-1)
         (slopes,) = self._tip_slopes.at_places(np.atleast_2d(at).T)
         by_place = slopes.reshape(3, -1, self.dynamics.sprung).swapaxes(0, 1)
