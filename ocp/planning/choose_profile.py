@@ -149,7 +149,7 @@ def _plan_without_limits(request: Request) -> Plan | None:
     if plan is not None:
         return plan
     more = more_terms(request.task)
-    plan = _try(request.along(more) if request.is_held else replace(request, profile=more))
+    plan = _try(replace(request, profile=more))
     return None if plan is None else _state_terms(plan)
 
 
