@@ -49,8 +49,8 @@ def path_lines(motion: JudgedMotion) -> list[str]:
 def band_lines_of_front(front: Front) -> list[str]:
     """The first line of a front whose task has a band: of its motion that acts first.
 
-    Of several the cheapest. Points keep their residuals at the ends of the ranges of errors alone,
-    so it may be that none of them keeps the band from arrival on, and that a plan does.
+    Of several the cheapest. The first point is the plan for the band, where the front's profile has
+    one; else it may be that none keeps the band from arrival on.
     """
     task = front.task
     limit = task.band_limit
