@@ -58,6 +58,7 @@ class Compiled:
         self._silent = silent
         self._turn = nullcontext() if side_by_side else _TURN
         self._idle: list[_Buffer] = []
+        self._mapped: dict[int, Compiled] = {}
 
     @property
     @interruptible
@@ -72,6 +73,15 @@ class Compiled:
         """The outputs as matrices, of inputs that are matrices, columns or numbers."""
         columns = [np.asarray(values, dtype=float).T for values in inputs]
         return self.run(columns, _transposed)
+
+    def at_places(self, *columns: Array) -> list[Array]:
+        """The outputs at many places side by side, of inputs that have a column for each."""
+        count = columns[0].shape[1]
+        if count == 1:
+            return self(*columns)
+        if count not in self._mapped:
+            self._mapped[count] = Compiled(lambda: self.function.map(count))
+        return self._mapped[count](*columns)
 
     @interruptible
     def run(self, inputs: Sequence[ArrayLike], read: Callable[[list[Array]], T]) -> T:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -15,6 +16,7 @@ from quietarm.ocp.planning.shaper import shaped_cycloid
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.rollout import Simulation
+from quietarm.ocp.task import PointToPoint
 from quietarm.ocp.uncertainty import FREQUENCY, perturb_plant
 
 Array = NDArray[np.float64]
@@ -51,43 +53,54 @@ def off_model(motion: JudgedMotion) -> OffModel:
     certain = motion.on(motion.task.certain)
     plant = certain.task.plant
     names = [name for name in SHARES if name == FREQUENCY or name in plant.measured]
+    off_plants = {name: _PlantOff(certain.task, name) for name in names}
     residuals = {
-        name: dict(zip(SHARES[name], _largest(certain, name, SHARES[name]))) for name in names
+        name: dict(zip(SHARES[name], off_plant.largest(certain)))
+        for name, off_plant in off_plants.items()
     }
-    return OffModel(residuals, _of_zv(certain))
+    return OffModel(residuals, _of_zv(certain.task, off_plants[FREQUENCY]))
 
 
-def _of_zv(motion: JudgedMotion) -> float | None:
-    task = motion.task
+def _of_zv(task: PointToPoint, off_plant: _PlantOff) -> float | None:
     try:
         zv = JudgedMotion.of_profile(task, shaped_cycloid(task, "zv"), [])
     except ValueError:  # too short, or nothing vibrates
         return None
-    return max(_largest(zv, FREQUENCY, [_SHARE_OF_ZV]))
+    return off_plant.largest(zv)[SHARES[FREQUENCY].index(_SHARE_OF_ZV)]
 
 
-def _largest(motion: JudgedMotion, name: str, shares: Sequence[float]) -> list[float]:
-    """Return the residuals by errors of one parameter [m], the larger of both signs of each."""
-    rows = [[error] for share in shares for error in (share, -share)]
-    return _residuals(motion, [name], rows).reshape(-1, 2).max(axis=1).tolist()
+class _PlantOff:
+    """The plant of a task with the errors of one parameter, of both signs."""
 
+    def __init__(self, task: PointToPoint, name: str) -> None:
+        self._task = task
+        self._name = name
+        self._errors = np.array([[sign * share] for share in SHARES[name] for sign in (1, -1)])
 
-def _residuals(
-    motion: JudgedMotion, names: Sequence[str], rows: Sequence[Sequence[float]]
-) -> Array:
-    """Residuals with these errors [m]; of a motion without a profile by CVODES."""
-    task = motion.task
-    if motion.profile is None:
-        return np.array([motion.perturbed(dict(zip(names, row))).residual for row in rows])
-    simulation = Simulation(
-        task.plant,
-        motion.profile,
-        default_steps(task, least=_STEPS),
-        errors=tuple(names),
-        breaks=motion.profile.breaks(task.duration),
-    )
-    errors = np.array(rows)
-    arrivals = simulation.arrivals(motion.coefficients, (*task.move, *task.initial_state), errors)
-    perturbed = perturb_plant(task.plant, dict(zip(names, map(ca.DM, errors.T))))
-    vibration = FreeVibration(perturbed, [task.target] * len(errors), task.residual_window)
-    return vibration.peak(task.missed(arrivals))
+    def largest(self, motion: JudgedMotion) -> list[float]:
+        """Return what a motion leaves by the size of the error [m], the larger of both signs."""
+        return self._residuals(motion).reshape(-1, 2).max(axis=1).tolist()
+
+    def _residuals(self, motion: JudgedMotion) -> Array:
+        """Residuals with these errors [m]; of a motion without a profile by CVODES."""
+        if motion.profile is None:
+            errors = self._errors[:, 0].tolist()
+            return np.array([motion.perturbed({self._name: error}).residual for error in errors])
+        task = self._task
+        simulation = Simulation(
+            task.plant,
+            motion.profile,
+            default_steps(task, least=_STEPS),
+            errors=(self._name,),
+            breaks=motion.profile.breaks(task.duration),
+        )
+        row = (*task.move, *task.initial_state)
+        arrivals = simulation.arrivals(motion.coefficients, row, self._errors)
+        return self._vibration.peak(task.missed(arrivals))
+
+    @cached_property
+    def _vibration(self) -> FreeVibration:
+        """After arrival, with each of the errors."""
+        task = self._task
+        perturbed = perturb_plant(task.plant, {self._name: ca.DM(self._errors)})
+        return FreeVibration(perturbed, [task.target] * len(self._errors), task.residual_window)

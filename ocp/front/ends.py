@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+import numpy as np
+
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY
+from quietarm.ocp.front.points import point_of
 from quietarm.ocp.front.tradeoff import BETWEEN_ENDS, RESIDUAL_LIMIT, Certificate, Tradeoff
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
 from quietarm.ocp.planning.best_of_starts import (
     SAME,
@@ -15,6 +19,7 @@ from quietarm.ocp.planning.best_of_starts import (
     solve_from_starts,
 )
 from quietarm.ocp.planning.certify import Certified, certify_one
+from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.remedies import least_peaks_of
 from quietarm.ocp.rest import still_of
 from quietarm.ocp.solvers.problem import (
@@ -57,7 +62,7 @@ def find_ends(tradeoff: Tradeoff) -> Ends:
     smaller residual would cost too much energy. Errors are those of `solve_from_starts`.
     """
     if tradeoff.task.uncertainty is not None:
-        return _of_scenarios(tradeoff)
+        return _within_ranges(tradeoff)
     end_at_rest = _at_rest(tradeoff)  # first: it settles the number of steps
     if end_at_rest is not None:
         tradeoff = end_at_rest.tradeoff
@@ -133,8 +138,44 @@ def _cheapest_of_residual(reached: Certified, between_samples: float = 1e-4) -> 
     )
 
 
+def _within_ranges(tradeoff: Tradeoff) -> Ends:
+    """The ends of an uncertain task; with a band the end of least residual is the plan for it.
+
+    The plan keeps the band in all of the ranges, with its worst cases as scenarios. The points
+    between the ends have these scenarios as well. Without a band, or a plan that keeps it, the
+    scenarios are those of the task.
+    """
+    task = tradeoff.task
+    nominal = find_ends(Tradeoff.begin(tradeoff.request.on(task.certain)))
+    if task.band_limit is None:
+        return _of_scenarios(tradeoff, nominal)
+    request = replace(tradeoff.request.within(task.band_limit), quick=True)
+    try:
+        plan = plan_along(request)
+    except SolverFailedError:
+        return _of_scenarios(tradeoff, nominal)
+    steps = max(nominal.tradeoff.program.steps, plan.steps)
+    profile = tradeoff.program.profile
+    kept = replace(
+        tradeoff,
+        request=tradeoff.request.on(plan.task),
+        program=Program(plan.task, profile, steps),
+    )
+    found = np.array(plan.coefficients)
+    starts = [nominal.cheapest.coefficients, found]
+    (cheapest,) = best_of_starts([kept.problem()], [starts], kept.solver)
+    within = kept.problem(task.band_limit)
+    (still,) = best_of_starts([within], [[found]], kept.solver, warm=True)
+    motion = JudgedMotion.of_profile(plan.task, profile, found)
+    point = replace(point_of(motion, kept.objectives), shadow_prices=plan.shadow_prices)
+    certificate = Certificate(point, plan.record.iterations or 0)
+    return Ends(kept, still, cheapest, (certificate, _certify_cheapest(kept, cheapest)))
+
+
 def _of_scenarios(
-    tradeoff: Tradeoff, energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3)
+    tradeoff: Tradeoff,
+    nominal: Ends,
+    energy_weights: tuple[float, ...] = (1.0, 0.1, 0.02, 2e-3),
 ) -> Ends:
     """The ends of an uncertain task, from those of the nominal one.
 
@@ -145,7 +186,6 @@ def _of_scenarios(
     times the energy of the nominal plant's motion at rest.
     """
     profile = tradeoff.program.profile
-    nominal = find_ends(Tradeoff.begin(tradeoff.request.on(tradeoff.task.certain)))
     steps = nominal.tradeoff.program.steps
     tradeoff = replace(tradeoff, program=Program(tradeoff.task, profile, steps))
     starts = [nominal.cheapest.coefficients, nominal.still.coefficients]

@@ -175,6 +175,7 @@ def _solved_grid(
 def _begin(request: Request, objectives: tuple[str, ...]) -> tuple[Tradeoff, Solution, Solution]:
     """The trade-off on its steps, its motion of least residual, and the cheapest."""
     ends = find_ends(Tradeoff.begin(request))
+    request = ends.tradeoff.request
     tradeoff = Tradeoff.measured(request, objectives)
     if request.steps is None and tradeoff.program.steps < ends.tradeoff.program.steps:
         tradeoff = Tradeoff.measured(request, objectives, ends.tradeoff.program.steps)

@@ -21,8 +21,8 @@ from quietarm.ocp.solvers.solver import Solver
 Array = NDArray[np.float64]
 SAME = 1e-5
 """Solutions whose objectives differ by less than this share count as one motion."""
-BRIEF = 120
-"""Iterations where no motion is to be seen as such soon; those that are found take 10 to 60."""
+BRIEF = 100
+"""Iterations where no motion is to be seen as such soon; those that are found take 10 to 75."""
 
 
 def solve_from_starts(

@@ -23,7 +23,7 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts, shortened
 from quietarm.ocp.planning.least_time import SplineFit, fit_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_along import plan_along
+from quietarm.ocp.planning.plan_along import excess_of, plan_along, refuse_far_beyond
 from quietarm.ocp.planning.remedies import has_a_plan, stated_limit
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
@@ -32,15 +32,13 @@ from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.record import Setting
 from quietarm.ocp.simulation.mesh import default_steps
-from quietarm.ocp.solvers.least_excess import least_excess
 from quietarm.ocp.solvers.problem import Program, Solution
-from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.task import PointToPoint
 
 SIX = CycloidPolynomial()
-_BEYOND = 0.03
-"""Share by which the limits have to be wider by linear programs, above which no robust plan is
-looked for."""
+_HOPELESS = 0.5
+"""Share by which limits have to be wider for the terms of a task, above which a spline, which may
+cruise, is not tried: it needs some hundredths less."""
 _OF_ONE_MODE = 18
 _OF_SEVERAL_MODES = 24
 """Terms within limits. Where one mode swings for more than seven periods 24 come 2 % nearer to the
@@ -80,6 +78,8 @@ def plan_on_chosen_profile(request: Request) -> Plan:
 
 def _plan_on_first_that_will_do(request: Request) -> Plan:
     """The plan along the profile of a request, or on a spline, or of more terms."""
+    if _is_hopeless(request):
+        raise InfeasibleTaskError(f"found no motion with {_stated(request)}")
     plan = _plan_within_limits(request) if request.task.limits else _plan_without_limits(request)
     if plan is not None and (plan.residual_limit or 0.0) <= request.residual_limit:
         return plan
@@ -92,21 +92,21 @@ def _plan_on_first_that_will_do(request: Request) -> Plan:
         return on_spline
     if plan is not None:
         return plan
-    # to look for what would do with other limits takes a minute, and a duration is soon found
-    is_beyond = fit is not None and fit.excess.is_beyond(_BEYOND)
-    if _is_held(request) and (is_beyond or not request.task.limits):
-        raise InfeasibleTaskError(_no_motion(request))
+    # to look for what would do with other limits takes longer, and a duration is soon found
+    if _may_take_longer(request):
+        motion = more_terms(request.task).amount
+        raise InfeasibleTaskError(f"found no motion of {motion} with {_stated(request)}")
     # where the residual limit adapts, the stand-in was tried with these terms before
     last = replace(request, has_stand_in=not request.adapts)
     return _state_terms(plan_along(last.along(more_terms(request.task))))
 
 
-def _is_held(request: Request) -> bool:
-    """Return whether an uncertain plant's plan has to keep a band or a stated residual limit.
+def _may_take_longer(request: Request) -> bool:
+    """Return whether a plan that has to keep a residual limit may be had in a longer duration.
 
-    Within a box of the coefficients a longer duration need not help: that is looked into.
+    Within a box of the coefficients that need not help: other limits are looked for.
     """
-    return request.task.uncertainty is not None and not request.adapts and request.bound is None
+    return request.is_held and request.bound is None
 
 
 def _fit(request: Request) -> SplineFit | None:
@@ -124,42 +124,33 @@ def _try_fit(request: Request, fit: SplineFit) -> Plan | None:
     return _try_along(request, fit.profile, fit.excess.coefficients)
 
 
-def _no_motion(request: Request) -> str:
-    """Say that no motion comes near to the limits."""
-    task = request.task
-    limits = Program.of(task, SIX).within(request.residual_limit).limits
-    stated = ", ".join(stated_limit(task, limit) for limit in limits)
-    return f"found no motion of {more_terms(task).amount} with {stated}"
+def _is_hopeless(request: Request) -> bool:
+    """Return whether limits are so far out of reach that no other profile will keep them either."""
+    if not _may_take_longer(request):
+        return False
+    excess = excess_of(request.along(request.profile))
+    return excess is not None and excess.is_beyond(_HOPELESS)
+
+
+def _stated(request: Request) -> str:
+    """The limits that no motion comes near to, in words."""
+    limits = Program.of(request.task, SIX).within(request.residual_limit).limits
+    return ", ".join(stated_limit(request.task, limit) for limit in limits)
 
 
 def _plan_without_limits(request: Request) -> Plan | None:
     """The plan of six terms, or of more where these find no motion."""
-    if _is_held(request):
-        return _plan_of_held(request)
-    with suppress(SolverFailedError):
-        return plan_along(request)
-    plan = _try(replace(request, profile=more_terms(request.task)))
-    return None if plan is None else _state_terms(plan)
-
-
-def _plan_of_held(request: Request) -> Plan | None:
-    """Return the plan within a residual limit that is held: what can be had is soon found."""
-    brief = replace(request, solver=shortened(request.solver), quick=True)
-    more = more_terms(request.task)
-    plan = _try(brief)
+    if request.is_held:
+        plan = _try(request)
+    else:
+        with suppress(SolverFailedError):
+            return plan_along(request)
+        plan = None
     if plan is not None:
-        return _of_solver(plan, request.solver)
-    try:
-        return _state_terms(_of_solver(plan_along(replace(brief, profile=more)), request.solver))
-    except InfeasibleTaskError:
-        return None
-
-
-def _of_solver(plan: Plan, solver: Solver) -> Plan:
-    """The plan whose record states a solver's options, and not those of its brief one."""
-    brief = shortened(solver).stated
-    kept = {name: value for name, value in plan.record.settings.items() if name not in brief}
-    return plan.restated(settings=kept | dict(solver.stated))
+        return plan
+    more = more_terms(request.task)
+    plan = _try(replace(request, profile=more))
+    return None if plan is None else _state_terms(plan)
 
 
 def _plan_within_limits(request: Request) -> Plan | None:
@@ -171,9 +162,10 @@ def _plan_within_limits(request: Request) -> Plan | None:
     began = time.perf_counter()
     profile = request.profile
     uncertain = request.task.uncertainty is not None
-    if _is_held(request):
-        problem = request.along(profile).problem()
-        if least_excess(problem, profile.plain).is_beyond(_BEYOND):
+    if request.is_held:
+        try:
+            refuse_far_beyond(request.along(profile))
+        except InfeasibleTaskError:
             return None
     best = _try_along(request, profile) if uncertain else None
     if best is not None:  # the energy of six terms, of the nominal plant, is no measure for it
@@ -243,21 +235,36 @@ def _with_a_duration(error: InfeasibleTaskError, request: Request) -> Infeasible
         return InfeasibleTaskError(error.what)
     if request.task.limits:
         return InfeasibleTaskError(what, _remedy(request))
-    if _is_held(request):
+    if _may_take_longer(request):
         return InfeasibleTaskError(error.what, _longer(request))
     return InfeasibleTaskError(error.what)
 
 
-def _longer(request: Request, growth: float = 1.5, most: int = 5) -> str:
-    """The first of some longer durations that will do without limits, in words; or nothing."""
+def _longer(request: Request, growth: float = 1.5, middle: int = 3, most: int = 5) -> str:
+    """The first of some longer durations that will do without limits, in words; or nothing.
+
+    Shorter ones are tried while they will do, else longer ones: what will not do takes longest.
+    """
+    durations = [f"{request.task.duration * growth**power:.3g}" for power in range(1, most + 1)]
+    *shorter, _ = durations[:middle]
+    if not _will_do(request, durations[middle - 1]):
+        longer = (duration for duration in durations[middle:] if _will_do(request, duration))
+        first = next(longer, None)
+        return "" if first is None else f"a duration of {first} s will do"
+    least = durations[middle - 1]
+    for duration in reversed(shorter):
+        if not _will_do(request, duration):
+            break
+        least = duration
+    return f"a duration of {least} s will do"
+
+
+def _will_do(request: Request, duration: str) -> bool:
+    """Return whether there is a plan without limits in a duration, in words [s]."""
     task = request.task
-    for power in range(1, most + 1):
-        duration = f"{task.duration * growth**power:.3g}"
-        longer = with_even_scenarios(replace(task, duration=float(duration)))
-        lasting = request.on(longer).along(more_terms(task))
-        if has_a_plan(lasting.problem(), lasting.profile.plain, shortened(request.solver)):
-            return f"a duration of {duration} s will do"
-    return ""
+    longer = with_even_scenarios(replace(task, duration=float(duration)))
+    lasting = request.on(longer).along(more_terms(task))
+    return has_a_plan(lasting.problem(), lasting.profile.plain, shortened(request.solver))
 
 
 def _remedy(request: Request) -> str:

@@ -22,10 +22,12 @@ from quietarm.ocp.planning.best_of_starts import (
     best_of_starts,
     is_beyond,
     minimum_of,
+    shortened,
     solve_from_starts,
 )
 from quietarm.ocp.planning.certify import OVERRUN, by_cvodes, certify_one
 from quietarm.ocp.planning.plan import Plan
+from quietarm.ocp.planning.remedies import stated_limit
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.residual_limit import band_words
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
@@ -33,6 +35,7 @@ from quietarm.ocp.planning.worst_scenarios import new_scenarios, with_moved_scen
 from quietarm.ocp.rest import rest_of
 from quietarm.ocp.robustness import peaks_between
 from quietarm.ocp.solvers.choice import stand_in_settings
+from quietarm.ocp.solvers.least_excess import Excess, least_excess
 from quietarm.ocp.solvers.problem import Program, Solution
 from quietarm.ocp.solvers.solver import NAME
 
@@ -50,14 +53,60 @@ _NOMINAL_STARTS = 8
 _BETWEEN = 2e-4
 """Share of the limit that is left to the worst case where it is beside a scenario."""
 
+FAR = 0.03
+"""Share by which the limits have to be wider by linear programs, above which no robust plan is
+looked for."""
+
 Array = NDArray[np.float64]
 
 
 def plan_along(request: Request) -> Plan:
     """The plan along the profile of a request, within its residual limit."""
     began = time.perf_counter()
-    plan = _adapt_limit(request) if request.adapts else _keep_limit(request)
+    if request.adapts:
+        plan = _adapt_limit(request)
+    else:
+        plan = _keep_briefly(request) if request.is_held else _keep_limit(request)
     return plan.restated(seconds=time.perf_counter() - began)
+
+
+def _keep_briefly(request: Request) -> Plan:
+    """The plan within a residual limit that is held: what can be had is soon found, or refused.
+
+    No other solver stands in, which takes most of a refusal and finds nothing.
+    """
+    if not request.quick:
+        refuse_far_beyond(request)
+    brief = replace(request, solver=shortened(request.solver), has_stand_in=False)
+    plan = _keep_limit(brief)
+    only_brief = brief.solver.stated
+    settings = {
+        name: value for name, value in plan.record.settings.items() if name not in only_brief
+    }
+    return plan.restated(settings=settings | dict(request.solver.stated))
+
+
+def refuse_far_beyond(request: Request) -> None:
+    """Refuse limits that linear programs find far out of reach; InfeasibleTaskError says how far.
+
+    They are asked of an uncertain plant alone, which takes the solver many times as long.
+    """
+    excess = excess_of(request)
+    if excess is None or not excess.is_beyond(FAR):
+        return
+    limits = request.problem().limits
+    stated = ", ".join(stated_limit(request.task, limit) for limit in limits)
+    names = " and ".join(limit.label for limit in request.task.limits)
+    raise InfeasibleTaskError(
+        f"found no motion of {request.profile.amount} with {stated}",
+        f"limits of {names} wider by {100 * excess.share:.0f} % or more, a longer duration or a "
+        "larger residual may do",
+    )
+
+
+def excess_of(request: Request) -> Excess | None:
+    """The least share by which limits have to be wider, by linear programs; None without limits."""
+    return least_excess(request.problem(), request.guesses[0]) if request.task.limits else None
 
 
 def _keep_limit(request: Request) -> Plan:

@@ -90,6 +90,11 @@ class Request:
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
+    @property
+    def is_held(self) -> bool:
+        """Return whether an uncertain plant has to keep a band or a stated residual limit."""
+        return self.task.uncertainty is not None and not self.adapts
+
     @cached_property
     def guesses(self) -> list[NDArray[np.float64]]:
         """Coefficients to start from: the guess or the plain cycloid, then random ones."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from quietarm.ocp import Front, Plan
 from quietarm.ocp.judged_motion import JudgedMotion
+from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.uncertainty import FREQUENCY
 from quietarm.views.tips import tip_words
 
@@ -49,8 +50,8 @@ def path_lines(motion: JudgedMotion) -> list[str]:
 def band_lines_of_front(front: Front) -> list[str]:
     """The first line of a front whose task has a band: of its motion that acts first.
 
-    Of several the cheapest. Points keep their residuals at the ends of the ranges of errors alone,
-    so it may be that none of them keeps the band from arrival on, and that a plan does.
+    Of several the cheapest. The first point is the plan for the band, where the front's profile has
+    one; else it may be that none keeps the band from arrival on.
     """
     task = front.task
     limit = task.band_limit
@@ -66,7 +67,7 @@ def band_lines_of_front(front: Front) -> list[str]:
             f"{first.energy:.4g} J; quietarm plan --band looks for one that does"
         ]
     words = f"{acting_words(first)}, by {first.energy:.4g} J"
-    if all(point.residual > limit for point in front.points):
+    if all(point.residual > (1 + OVERRUN) * limit for point in front.points):
         words += (
             f"; no motion of this front leaves less than {tip_words(limit, 'm')}, the band over "
             "its margin; quietarm plan --band looks for one that does"

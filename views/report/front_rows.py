@@ -155,9 +155,8 @@ def _range_lines(front: Front) -> list[str]:
     more = worst - residuals
     leave_more = (more > OVERRUN * residuals) & (more > still_of(task))
     farthest = int(more.argmax())
-    words = (
-        "the points keep their residuals in the scenarios alone, at the ends of the range of errors"
-    )
+    errors = len(task.scenarios) - 1
+    words = f"the points keep their residuals in the scenarios alone, {errors} errors of the range"
     if not leave_more.any():
         return [f"{words}; within it none leaves more"]
     unit = task.plant.tip_unit

@@ -180,10 +180,17 @@ class Dynamics:
             by_joint[self._order.index(leader)] += follower.multiplier * torques[number]
         return by_joint
 
-    def at_rest(self, x: ArrayLike) -> tuple[Array, Array]:
-        """Torques of all joints at rest, and their slopes by the springs' angles."""
-        torques, slopes = self._at_rest(x)
-        torques = torques.ravel()
+    def at_rest(self, x: Array) -> tuple[Array, Array]:
+        """Torques of all joints at rest, and their slopes by the springs' angles.
+
+        At one position of the joints, shape (size,), or at many, (places, size).
+        """
+        at = np.atleast_2d(x)
+        torques, slopes = self._at_rest.at_places(at.T)
+        torques = torques.T
+        slopes = slopes.reshape(self.size, len(at), self.sprung).swapaxes(0, 1)
+        if np.ndim(x) == 1:
+            torques, slopes = torques[0], slopes[0]
         if self.added is None:
             return torques, slopes
         mass, of_one = self.added
@@ -224,29 +231,33 @@ class Dynamics:
     def sag(self, q: Array, begin: Array | None = None) -> Array:
         """Angles of the springs at rest, by Newton from where they may be.
 
-        SoftSpringError where there is no equilibrium near.
+        At one position of the driven joints, shape (driven,), or at many at once, (places,
+        driven). SoftSpringError where there is no equilibrium near.
         """
-        p = np.zeros(self.sprung) if begin is None else begin.copy()
+        shape = (*np.shape(q)[:-1], self.sprung)
+        p = np.zeros(shape) if begin is None else np.broadcast_to(begin, shape).copy()
         if not self.sprung:
             return p
         for _ in range(_MOST_NEWTON):
             excess, slopes = self.stiffness_at(q, p)
-            step = np.linalg.solve(slopes, excess)
+            step = np.linalg.solve(slopes, excess[..., None])[..., 0]
             p -= step
             if not np.all(np.abs(p) < _FAR):
                 break
             if np.abs(step).max() < _SETTLED:
                 break
-        if not np.all(np.abs(p) < _MOST_SAG):
-            raise SoftSpringError(self.mechanism.spring_names[int(np.abs(p).argmax())])
+        is_near = np.abs(p) < _MOST_SAG
+        if not np.all(is_near):
+            farthest = np.unravel_index(np.where(is_near, 0.0, np.abs(p)).argmax(), shape)
+            raise SoftSpringError(self.mechanism.spring_names[farthest[-1]], farthest[:-1])
         return p
 
     def stiffness_at(self, q: Array, p: Array) -> tuple[Array, Array]:
-        """Return the imbalance of springs and gravity [N m], and its slopes."""
-        torque, slopes = self.at_rest(np.concatenate([q, p]))
+        """Return the imbalance of springs and gravity [N m], and its slopes; of many places too."""
+        torque, slopes = self.at_rest(np.concatenate([q, p], axis=-1))
         stiffness = self.mechanism.stiffness
-        excess = torque[self.driven :] + stiffness * p
-        return excess, slopes[self.driven :] + np.diag(stiffness)
+        excess = torque[..., self.driven :] + stiffness * p
+        return excess, slopes[..., self.driven :, :] + np.diag(stiffness)
 
 
 _MOST_NEWTON = 50
@@ -259,4 +270,8 @@ _MOST_SAG = 0.35
 
 
 class SoftSpringError(ArithmeticError):
-    """A spring of this name cannot carry its load."""
+    """A spring of this name cannot carry its load, at this place among many."""
+
+    def __init__(self, spring: str, place: tuple[np.intp, ...] = ()) -> None:
+        super().__init__(spring)
+        self.place = place

@@ -45,11 +45,11 @@ _NEAR = 0.5
 
 
 def sag_at(dynamics: Dynamics, q: Array, begin: Array | None = None) -> Array:
-    """Angles of the springs at rest; ValueError where one is too soft."""
+    """Angles of the springs at rest, at one place or at many; ValueError where one is too soft."""
     try:
         return dynamics.sag(q, begin)
     except SoftSpringError as error:
-        raise _too_soft(dynamics, str(error), q) from None
+        raise _too_soft(dynamics, str(error), q[error.place]) from None
 
 
 def modes_at(dynamics: Dynamics, q: Array, p: Array | None = None) -> tuple[Array, Array]:

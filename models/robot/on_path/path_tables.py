@@ -14,6 +14,7 @@ from quietarm.models.kept_functions import kept_arrays
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.on_path.reduction import (
     FORCING,
+    MIDDLE,
     OF_MODES,
     OF_TORQUES,
     Coefficients,
@@ -221,9 +222,22 @@ def _reduction_of(robot: MovingRobot, path: GeometricPath) -> Reduction:
     return Reduction(robot.dynamics, robot.tip_place, path, modes_on(robot, path))
 
 
+@lru_cache(maxsize=64)
+def _nominal_columns(robot: MovingRobot, path: GeometricPath, places: tuple[float, ...]) -> Array:
+    """Columns of a robot's own coefficients at places, which every multiple is compared with."""
+    nominal = _reduction_of(robot, path)
+    return _layout_of(robot, path).columns(nominal.at(np.array(places)))
+
+
+@lru_cache(maxsize=16)
+def _layout_of(robot: MovingRobot, path: GeometricPath) -> _Layout:
+    """Return how the coefficients of a robot on a path stand side by side."""
+    return _Layout(_reduction_of(robot, path).at(np.array([MIDDLE])))
+
+
 def _fit_tables(robot: MovingRobot, path: GeometricPath) -> Tables:
     reduction = _reduction_of(robot, path)
-    layout = _Layout(reduction.at(np.array([0.5])))
+    layout = _layout_of(robot, path)
 
     def columns(places: Array) -> Array:
         return layout.columns(reduction.at(places))
@@ -304,7 +318,11 @@ def _fit_variations(
 ) -> dict[tuple[int, ...], Groups]:
     tables = tables_of(robot, path)
     nominal = _reduction_of(robot, path)
-    layout = _Layout(nominal.at(np.array([0.5])))
+    layout = _layout_of(robot, path)
+
+    def before(places: Array) -> Array:
+        return _nominal_columns(robot, path, tuple(places.tolist()))
+
     multiples = dict.fromkeys(VARIED, 1.0)
     errors, powers = _design(len(names))
     varied = [
@@ -315,13 +333,13 @@ def _fit_variations(
 
     def terms_of(places: Array) -> Array:
         """Places -> the factors of all monomials, side by side."""
-        before = layout.columns(nominal.at(places))
-        changes = np.array([layout.columns(reduction.at(places)) - before for reduction in varied])
+        unvaried = before(places)
+        changes = np.array([layout.columns(each.at(places)) - unvaried for each in varied])
         factors = np.linalg.solve(monomials, changes.reshape(len(varied), -1))
         by_place = factors.reshape(changes.shape).swapaxes(0, 1)
         return by_place.reshape(len(places), -1)
 
-    scales = layout.scales(layout.columns(nominal.at(np.linspace(0.0, 1.0, NODES))))
+    scales = layout.scales(before(np.linspace(0.0, 1.0, NODES)))
     fitted = without_small_terms(
         interpolate(terms_of, tables.knots, NODES),
         np.tile(ACCURACY_OF_CHANGES * scales, len(powers)),

@@ -8,8 +8,11 @@ import pytest
 import quietarm as qa
 from quietarm.models import LinearAxis, SingleLinkManipulator
 from quietarm.ocp import InfeasibleTaskError, PointToPoint
+from quietarm.ocp.planning.plan_along import refuse_far_beyond
+from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.rigid_pass import least_duration
 from quietarm.ocp.planning.too_short import refuse_too_short
+from quietarm.ocp.profiles.networks import CycloidGaussians
 
 SPAN = math.radians(30)
 LINK = PointToPoint(SingleLinkManipulator(c=0.0), SPAN, 0.8)
@@ -155,3 +158,29 @@ def pendulum():
     from dataclasses import dataclass
 
     return dataclass(frozen=True)(Pendulum)()
+
+
+OUT_OF_REACH = PointToPoint(
+    SingleLinkManipulator(), SPAN, 0.5, torque_limit=0.2, jerk_limit=400, band=1e-4
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("profile", [qa.CycloidPolynomial(8), CycloidGaussians()])
+def test_a_named_profile_far_from_a_robust_limit_is_refused_without_a_solver(solves, profile):
+    with pytest.raises(InfeasibleTaskError, match="limits of torque and jerk wider by ") as error:
+        qa.plan_move(OUT_OF_REACH, profile)
+    assert not solves
+    wider = 1 + float(str(error.value).split("wider by ")[1].split()[0]) / 100
+    limits = {"torque_limit": 1.02 * wider * 0.2, "jerk_limit": 1.02 * wider * 400}
+    if profile.size == 8:  # on Gaussians linear programs find a motion near the start alone
+        refuse_far_beyond(Request(replace(OUT_OF_REACH, **limits), profile).stating(None))
+
+
+@pytest.mark.slow
+def test_limits_far_out_of_reach_are_refused_with_a_duration_that_will_do(solves):
+    with pytest.raises(InfeasibleTaskError, match=r"a duration of (\S+) s will do") as error:
+        qa.plan_move(OUT_OF_REACH)
+    assert len(solves) < 10  # of the remedy alone
+    longer = float(str(error.value).split("duration of ")[1].split()[0])
+    assert 0.5 < longer < 1.5
