@@ -324,7 +324,7 @@ def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
     for path in structure.paths:
         trail = [path[begun : k + 1] for k in range(len(path))]
         yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=AFTER_ARRIVAL)
-    for points, colour, width, _ in structure.bent:
+    for points, colour, width, *_ in structure.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC
         yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",
                    markersize=_THIN * width)  # fmt: skip

@@ -13,7 +13,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from quietarm.views.pictures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK, PALE
+from quietarm.views.pictures.grammar import AFTER_ARRIVAL, FAINT, GREY, PALE
 from quietarm.views.pictures.space import Camera, by_depth, capsules
 from quietarm.views.pictures.structure import Structure
 
@@ -40,9 +40,10 @@ def draw_in_space(ax: Axes, structure: Structure, camera: Camera) -> Iterator[Up
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_axis_off()
     light_edge = _EDGE * camera.room.reach
-    ax.add_collection(PolyCollection([edge], facecolor=PALE), autolim=False)
-    ax.add_collection(LineCollection(squares, color="white", linewidth=0.8), autolim=False)
-    shadow = PathPatch(Path(edge), facecolor=_SHADOW, linewidth=0.0)
+    ax.add_collection(PolyCollection([edge], facecolor=PALE, zorder=0.1), autolim=False)
+    lines = LineCollection(squares, color="white", linewidth=0.8, zorder=0.2)
+    ax.add_collection(lines, autolim=False)
+    shadow = PathPatch(Path(edge), facecolor=_SHADOW, linewidth=0.0, zorder=0.3)
     ax.add_patch(shadow)
 
     def cast(k: int) -> None:
@@ -55,10 +56,11 @@ def draw_in_space(ax: Axes, structure: Structure, camera: Camera) -> Iterator[Up
     yield cast
     begun = int(np.searchsorted(structure.times, structure.trail_begins))
     for path in structure.paths:
-        (trail,) = ax.plot([], [], color=structure.line.colour, linewidth=1.6, alpha=AFTER_ARRIVAL)
+        look = {"color": structure.line.colour, "linewidth": 1.6, "alpha": AFTER_ARRIVAL}
+        (trail,) = ax.plot([], [], zorder=0.4, **look)
         way = camera.seen(path)[:, :2]
         yield lambda k, trail=trail, way=way: trail.set_data(*way[begun : k + 1].T)
-    bodies = PolyCollection([], linewidths=0.0)
+    bodies = PolyCollection([], linewidths=0.0, zorder=1.0)
     ax.add_collection(bodies, autolim=False)
 
     def place(k: int) -> None:
@@ -75,7 +77,7 @@ def draw_in_space(ax: Axes, structure: Structure, camera: Camera) -> Iterator[Up
 
     yield place
     for part in structure.unbent:
-        if part.colour in (FAINT, INK) or part.points.shape[1] == 1:
+        if not part.tip:
             continue
         (dashed,) = ax.plot([], [], color=GREY, linewidth=1.0, linestyle="--")
         line = camera.seen(part.points)[..., :2]

@@ -31,6 +31,8 @@ class DrawnPart(NamedTuple):
     width: float
     radius: float = 0.0
     """In space [m]."""
+    tip: bool = False
+    """Whether its last point is a tip."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,9 @@ class Structure:
                 parts.append(DrawnPart(points + _DOT, INK, 16.0))
                 continue
             colour = INK if body.rigid and not body.tip else self.line.colour
-            parts.append(DrawnPart(points, colour, 9.0 if body.rigid else 5.0, body.radius))
+            parts.append(
+                DrawnPart(points, colour, 9.0 if body.rigid else 5.0, body.radius, body.tip)
+            )
         return parts
 
 
