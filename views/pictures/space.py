@@ -46,7 +46,7 @@ class Room:
     @classmethod
     def of(cls, structures: Sequence[Structure]) -> Room:
         """Return the room of structures of one plant at all of their frames."""
-        parts = [part for structure in structures for part in (*structure.bent, *structure.unbent)]
+        parts = [part for structure in structures for part in structure.bent]
         low = np.min([part.points.min(axis=(0, 1)) - part.radius for part in parts], axis=0)
         high = np.max([part.points.max(axis=(0, 1)) + part.radius for part in parts], axis=0)
         feet = [part.points[..., 0, 2].min() for part in parts if part.colour == FAINT]

@@ -56,8 +56,8 @@ def draw_in_space(ax: Axes, structure: Structure, camera: Camera) -> Iterator[Up
     yield cast
     begun = int(np.searchsorted(structure.times, structure.trail_begins))
     for path in structure.paths:
-        look = {"color": structure.line.colour, "linewidth": 1.6, "alpha": AFTER_ARRIVAL}
-        (trail,) = ax.plot([], [], zorder=0.4, **look)
+        (trail,) = ax.plot([], [], color=structure.line.colour, linewidth=1.6, zorder=0.4)
+        trail.set_alpha(AFTER_ARRIVAL)
         way = camera.seen(path)[:, :2]
         yield lambda k, trail=trail, way=way: trail.set_data(*way[begun : k + 1].T)
     bodies = PolyCollection([], linewidths=0.0, zorder=1.0)

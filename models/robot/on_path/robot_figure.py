@@ -30,7 +30,7 @@ _OF_BEAM = 0.011
 _OF_LOAD = 0.028
 """Radii as shares of a robot's size: a URDF says nothing of how thick links are."""
 _BETWEEN = 3
-"""Parts of the beam between two hinges, so that it is round."""
+"""Parts of the beam for each of its pieces, so that it is round."""
 
 
 @lru_cache(maxsize=8)
@@ -170,7 +170,7 @@ class RobotFigure:
         last = points[1 + self._chain[-1]] if self._chain else points[0]
         rows = [1 + n for n, body in enumerate(self._bodies) if body.of_beam]
         hinges = points[rows[::2]]
-        bent = _rounded(np.vstack([clamp, hinges, points[-3]]))
+        bent = self._rounding @ np.vstack([clamp, hinges, points[-3]])
         beam = Body(bent, tip=self._tip_is_beam, radius=_OF_BEAM * self._size)
         drawn = [beam]
         if np.linalg.norm(clamp - last) > 0:
@@ -178,6 +178,16 @@ class RobotFigure:
         if self._beam.tip_mass > 0:
             drawn.append(Body(points[[-3]], rigid=True, radius=_OF_LOAD * self._size))
         return drawn
+
+    @cached_property
+    def _rounding(self) -> Array:
+        """Points of a smooth line through clamp, hinges and end, as their multiples."""
+        from scipy.interpolate import CubicSpline  # takes a quarter of a second to load
+
+        assert self._beam is not None
+        along = np.array([0.0, *self._beam.places, self._beam.length])
+        fine = np.linspace(0.0, along[-1], 1 + _BETWEEN * (len(along) - 1))
+        return CubicSpline(along, np.eye(len(along)))(fine)
 
     def _points(self, place: float, tips: Array) -> Array:
         """Return places [m]: the ground, every body, axes of joints, the beam's ends, the tip."""
@@ -199,13 +209,3 @@ class RobotFigure:
         points = [self._dynamics.place(place, x)[1] for place in [*places, self._tip]]
         columns = ca.densify(ca.horzcat(ca.SX(3, 1), *points))
         return Compiled(lambda: ca.Function("points", [x], [columns], {"cse": True}))
-
-
-def _rounded(corners: Array) -> Array:
-    """Points of a smooth line through the hinges of a beam."""
-    from scipy.interpolate import CubicSpline  # takes a quarter of a second to load
-
-    steps = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-    along = np.append(0.0, np.cumsum(steps))
-    fine = np.linspace(0.0, along[-1], 1 + _BETWEEN * len(steps))
-    return CubicSpline(along, corners)(fine)

@@ -13,6 +13,7 @@ import yaml
 from c_library import compiled, needs_compiler
 from PIL import Image
 from robots import BAR, END, START, UR5_JOINTS, straight, ur5_with_bar, urdf_of
+from saved_figures import saved_figures
 from scipy.io import loadmat
 
 import quietarm as qa
@@ -159,7 +160,12 @@ def test_displacements_of_the_tip_are_named_by_the_axes_of_its_frame(tmp_path):
 @pytest.mark.slow
 def test_a_film_of_a_robot_moves_and_has_the_cycloid_beside_it(tmp_path):
     film = animate(_plan(), width=240, rate=3)
-    film.save(tmp_path / "film.gif")
+    with saved_figures() as figures:
+        film.save(tmp_path / "film.gif")
+    (legend,) = figures[-1].legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words[:2] == ["plain cycloid", "this plan"]
+    assert words[2:] == ["without bending", "way of the tip", "squares of 20 cm"]
     assert [structure.line.label for structure in film.structures] == ["plain cycloid", "this plan"]
     with Image.open(tmp_path / "film.gif") as image:
         assert image.n_frames == 7
