@@ -26,18 +26,22 @@ class Body:
 
     Attributes
     ----------
-    points : ndarray, shape (points, 2)
-        The line through its length [m]; a single point stands for a disc, as of a hub.
+    points : ndarray, shape (points, 2) or (points, 3)
+        The line through its length [m], of a plant in space in three coordinates; a single point
+        stands for a disc or a ball, as of a hub.
     rigid, tip : bool
         Whether it does not bend; whether its last point is a tip, whose path is drawn.
     ground : bool
-        Whether it is the floor, or a shadow on it, which is drawn thin.
+        Whether it stands on the floor, its first point, and is drawn pale.
+    radius : float
+        Of the line in space [m].
     """
 
     points: Array
     rigid: bool = False
     tip: bool = False
     ground: bool = False
+    radius: float = 0.0
 
 
 def rigid_link(

@@ -182,7 +182,7 @@ class Plant(_Driven, ABC):
     """Least and largest joint angle, or place on the path, that the equations are made for; None
     where they hold at any. A move must begin and end within it."""
     in_space: ClassVar[bool] = False
-    """Whether its `structure` is seen from the side, in space; else from above."""
+    """Whether its `structure` is in space; else it is in a plane, seen from above."""
     along_path: ClassVar[bool] = False
     """Whether the joint's angle is a place on a path from 0 to 1 although there is one joint."""
     is_kept: ClassVar[bool] = False
@@ -395,11 +395,17 @@ class Plant(_Driven, ABC):
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
         """The structure seen from above, by default a straight link of 1 m for each tip.
 
-        The joint's angle is in rad; the tips are `tip_displacements` [m], scaled for the picture.
+        Of a plant `in_space` points have a third coordinate, upwards. The joint's angle is in rad;
+        the tips are `tip_displacements` [m], scaled for the picture.
         """
         shapes = [rigid_link(1.0, angle, tip) for tip in tips]
         links = [Body(shape, rigid=True, tip=True) for shape in shapes]
         return [*links, Body(np.zeros((1, 2)), rigid=True)]
+
+    @property
+    def seen_from(self) -> float:
+        """Direction of the ground from which a structure in space is seen at first [rad]."""
+        return 0.0
 
     @property
     @final

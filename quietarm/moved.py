@@ -36,7 +36,7 @@ ROOMS = {
     "models.robot.piecewise": "models.robot.path.piecewise",
     "models.robot.reduction": "models.robot.on_path.reduction",
     "models.robot.spectra": "models.robot.elastic.spectra",
-    "models.robot.stick_figure": "models.robot.on_path.stick_figure",
+    "models.robot.stick_figure": "models.robot.on_path.robot_figure",
     "models.robot.tables": "models.robot.on_path.path_tables",
     "metaheuristics.gradient": "metaheuristics.methods.gradient_methods",
     "metaheuristics.user_method": "metaheuristics.methods.user_method",

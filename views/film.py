@@ -14,6 +14,8 @@ import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -22,9 +24,11 @@ from quietarm.ocp import Plan
 from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import unwritable, write_whole
 from quietarm.views.film_settings import FRAMES, WIDTHS
-from quietarm.views.pictures.axes import TITLE, new_figure
-from quietarm.views.pictures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK
-from quietarm.views.pictures.motion import Motions, draw_quantity, lines_of
+from quietarm.views.pictures.axes import TITLE, legend_of, new_figure
+from quietarm.views.pictures.grammar import AFTER_ARRIVAL, GREY, INK, PALE
+from quietarm.views.pictures.motion import Motions, draw_briefly, lines_of
+from quietarm.views.pictures.space import Camera, Room
+from quietarm.views.pictures.space_drawing import Update, draw_in_space
 from quietarm.views.pictures.structure import Structure, structures_of
 from quietarm.views.report.saving import as_written
 from quietarm.views.report.words import (
@@ -40,6 +44,7 @@ _COLUMNS = 2
 """Panels in a row: beside a third the letters would be too small for a phone."""
 _PANEL = 2.7
 _HIGH = 2.1
+_HIGH_IN_SPACE = 2.7
 _CURVES_HIGH = 1.6
 _LINE = 0.2
 _LETTERS = 11.5
@@ -47,15 +52,14 @@ _LETTERS = 11.5
 
 A film of two panels is 5.4 inch wide: on a phone of 390 pixels a letter of 10 points is 9 high.
 """
+_IN_LEGEND = 3
+"""Entries in a row of the legend."""
 _SMALL = 10
 """Points of the letters at axes."""
 _THIN = 0.8
 _DISC = 1e-5
 """Of the widths of parts; a part as small as this [m] is a disc."""
 _COLOURS = 128
-
-Update = Callable[[int], object]
-"""Brings an artist to a frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,8 +225,11 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
     same = len({structure.line.plan.task for structure in structures}) == 1
     titles = [_title(structure, same, int(_LETTERS * inches / columns)) for structure in structures]
     heading = wrap(_heading(structures[0], same), int(_LETTERS * inches) - 16)  # beside the clock
-    above = _LINE * len(heading) + rows * (_HIGH + _LINE * max(map(len, titles)))
-    figure = new_figure(inches, above + _CURVES_HIGH)
+    in_space = any(structure.line.plan.task.plant.in_space for structure in structures)
+    high = _HIGH_IN_SPACE if in_space else _HIGH
+    above = _LINE * len(heading) + rows * (high + _LINE * max(map(len, titles)))
+    below_high = _CURVES_HIGH + 2 * _LINE
+    figure = new_figure(inches, above + below_high)
     figure.set_dpi(film.width / inches)
     figure.suptitle("\n".join(heading), x=0.01, ha="left", fontsize=10)
     clock = figure.text(0.99, 0.99, "", ha="right", va="top", fontsize=10)
@@ -235,17 +242,24 @@ def _draw(film: Film) -> tuple[Figure, Callable[[int], Any]]:
         spare.axis("off")
     for structure, title, ax in zip(structures, titles, panels):
         ax.set_title("\n".join(title), **TITLE)
-        name = structure.line.plan.task.plant.name
+        plant = structure.line.plan.task.plant
+        if plant.in_space:
+            alike = [other for other in structures if other.line.plan.task.plant == plant]
+            updates += draw_in_space(ax, structure, Camera(Room.of(alike), plant.seen_from))
+            continue
+        name = plant.name
         for drawn in structures:
             if drawn.line.plan.task.plant.name == name:
                 ax.update_datalim(drawn.corners)
         updates += _draw_structure(ax, structure)
-    for ax, quantity in zip(lower.subplots(1, len(curves)), curves):
-        draw_quantity([structure.line for structure in structures], quantity, ax)
+    below = list(lower.subplots(1, len(curves)))
+    for ax, quantity in zip(below, curves):
+        draw_briefly([structure.line for structure in structures], quantity, ax)
         ax.set_xlim(0.0, film.end)
         ax.tick_params(labelsize=_SMALL)
         cursor = ax.axvline(0.0, color=INK, linewidth=1.2)
         updates.append(lambda k, cursor=cursor: cursor.set_xdata([times[k], times[k]]))
+    _explain(figure, structures, below)
     with as_written(figure):
         figure.draw_without_rendering()
     figure.set_layout_engine(None)  # any, even one that does nothing, draws every frame twice
@@ -275,6 +289,23 @@ def _title(structure: Structure, same: bool, room: int) -> list[str]:
     return [part for line in lines for part in wrap(line, room)]
 
 
+def _explain(figure: Figure, structures: Sequence[Structure], below: Sequence[Axes]) -> None:
+    """Add a legend of all lines, below all panels, and what the squares of a floor are."""
+    handles, labels = legend_of(below)
+    handles.append(Line2D([], [], color=GREY, linewidth=1.0, linestyle="--"))
+    labels.append("without bending")
+    handles.append(Line2D([], [], color=GREY, linewidth=2.0, alpha=AFTER_ARRIVAL))
+    in_space = [one for one in structures if one.line.plan.task.plant.in_space]
+    labels.append("way of the tip" if in_space else "way of the tip after arrival")
+    for words in {Room.of([one]).square_words for one in in_space}:
+        handles.append(Patch(facecolor=PALE))
+        labels.append(words)
+    figure.legend(
+        handles, labels, loc="outside lower left", ncols=_IN_LEGEND, fontsize=_SMALL, frameon=False,
+        columnspacing=1.0, handlelength=1.6, borderaxespad=0.2,
+    )  # fmt: skip
+
+
 def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
     """Set up a structure's panel, in metres; what brings its parts to a frame."""
     ax.tick_params(labelsize=_SMALL)
@@ -282,22 +313,18 @@ def _draw_structure(ax: Axes, structure: Structure) -> Iterator[Update]:
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("x [m]", fontsize=_SMALL)
     ax.set_ylabel("y [m]", fontsize=_SMALL)
-    if structure.line.plan.task.plant.in_space:  # lengths along the axes are not those of the robot
-        ax.set(xticks=[], yticks=[], xlabel="seen from one side, not to scale", ylabel="")
 
     def part(points: Sequence[NDArray[np.float64]] | NDArray[np.float64], **look: Any) -> Update:
         (artist,) = ax.plot([], [], solid_capstyle="round", **look)
         return lambda k: artist.set_data(*points[k].T)
 
-    for points, colour, _ in structure.unbent:
-        if colour == FAINT:
-            continue
+    for points, *_ in structure.unbent:
         yield part(points, color=GREY, linewidth=1.0, linestyle="--")
     begun = int(np.searchsorted(structure.times, structure.trail_begins))
     for path in structure.paths:
         trail = [path[begun : k + 1] for k in range(len(path))]
         yield part(trail, color=structure.line.colour, linewidth=2.0, alpha=AFTER_ARRIVAL)
-    for points, colour, width in structure.bent:
+    for points, colour, width, *_ in structure.bent:
         disc = np.ptp(points[0], axis=0).max() < _DISC
         yield part(points, color=colour, linewidth=_THIN * width, marker="o" if disc else "",
                    markersize=_THIN * width)  # fmt: skip

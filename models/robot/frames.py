@@ -46,6 +46,14 @@ def rotation_about(axis: Array, angle: float) -> Array:
     return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
 
 
+def shortest_turn(direction: Array) -> Array:
+    """Return the rotation that turns z into a direction; of -z about x."""
+    x, y, z = direction / np.linalg.norm(direction)
+    across = np.hypot(x, y)
+    axis = np.array([-y, x, 0.0]) / across if across > 0 else np.array([1.0, 0.0, 0.0])
+    return rotation_about(axis, np.arctan2(across, z))
+
+
 def skew_of(vector: Array) -> Array:
     """The matrix by which a vector is multiplied crosswise from the left."""
     x = vector[0]

@@ -51,7 +51,7 @@ from quietarm.models.robot.on_path.path_tables import (
     tables_of,
     variations_of,
 )
-from quietarm.models.robot.on_path.stick_figure import stick_figure_of
+from quietarm.models.robot.on_path.robot_figure import robot_figure_of
 from quietarm.models.robot.on_path.tip_way import way_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.straight_line import tip_beside_lines
@@ -540,8 +540,13 @@ class RobotOnPath(Plant):
         return way.deviations(places, tips, target)
 
     def structure(self, angle: float, tips: Sequence[float]) -> Sequence[Body]:
-        """The robot in space at a place of its path, as a stick figure."""
-        return stick_figure_of(self.robot, self.path).bodies(angle, tips)
+        """The robot in space at a place of its path: capsules between its joints, and the beam."""
+        return robot_figure_of(self.robot, self.path).bodies(angle, tips)
+
+    @property
+    def seen_from(self) -> float:
+        """Direction of the ground from which it is seen, that of most of the tip's way [rad]."""
+        return robot_figure_of(self.robot, self.path).seen_from
 
     def tip_speeds(self, path: JointMotion, W: Modes, dW: Modes) -> Sequence[Expression]:
         """Speeds of the tips [m/s]."""

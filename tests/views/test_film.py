@@ -1,13 +1,12 @@
 """A film is a file that opens, with frames that differ as the structures do."""
 
 import math
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
+from saved_figures import saved_figures
 
 from quietarm.models import ArmOnFlexibleLink, LinearAxis
 from quietarm.ocp import PointToPoint, energy_floor, evaluate_coefficients
@@ -123,19 +122,10 @@ def test_letters_are_read_on_a_phone_and_panels_say_what_they_show(plan, cycloid
     assert all(ax.get_xlabel().split("]")[0][-1] in "ms" for ax in named)
     units = [ax.get_ylabel() or title for ax, title in zip(figure.axes, titles) if ax.axison]
     assert [words.split("[")[1] for words in units] == [*["m]"] * count, "mm]", "W]"]
-
-
-@contextmanager
-def saved_figures():
-    """Figures of frames that are saved meanwhile."""
-    figures = []
-    with pytest.MonkeyPatch.context() as patch:
-        save = Figure.savefig
-        patch.setattr(
-            Figure, "savefig",
-            lambda figure, *place, **how: (figures.append(figure), save(figure, *place, **how)),
-        )  # fmt: skip
-        yield figures
+    (legend,) = figure.legends  # no line without one
+    named = [text.get_text() for text in legend.get_texts()]
+    lines = ["plan", "plain cycloid"][: max(1, min(count, 2))]
+    assert named == [*lines, "without bending", "way of the tip after arrival"]
 
 
 def test_without_ffmpeg_it_is_asked_for(plan, monkeypatch, tmp_path):

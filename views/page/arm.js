@@ -1,40 +1,67 @@
-// The structure in motion, the plain cycloid as a ghost behind it, the tips' trails, and how far they swing.
+// The structure in motion, in a plane or in space, the plain cycloid as a ghost behind it, the tips' trails, and how far they swing.
 const scene = {};
 const swing = {};
 const drawScene = () => {
   const svg = byId("scene");
   const { structure } = state.move;
+  svg.classList.toggle("space", structure.in_space);
+  svg.toggleAttribute("tabindex", false);
+  if (structure.in_space) svg.setAttribute("tabindex", "0");
+  if (structure.in_space) drawSpace(svg);
+  else drawPlane(svg);
+  const view = byId("view");
+  view.textContent = "The motion ";
+  element(view, "span", structure.scale, "unit");
+  const turns = structure.in_space ? "; arrow keys turn it" : "";
+  svg.setAttribute("aria-label", `The structure in motion: the chosen motion, the plain cycloid in grey, dashed where it shall stand${turns}`);
+  drawLines(structure);
+};
+// What the lines of the picture are.
+const drawLines = ({ in_space: inSpace, room }) => {
+  const key = byId("lines");
+  key.replaceChildren();
+  const line = (label, look) => keyEntry(key, label, (picture) => draw(picture, "path", { d: "M0 7H22", ...look }));
+  if (inSpace) line("robot", { stroke: "var(--metal)", "stroke-width": 7 });
+  line(inSpace ? "what gives, this motion" : "this motion", { stroke: "var(--this)", "stroke-width": 5 });
+  line("plain cycloid", { stroke: "var(--cycloid)", "stroke-width": 5, "stroke-opacity": 0.6 });
+  line("at the end", { stroke: "var(--soft)", "stroke-width": 1.2, "stroke-dasharray": "5 3" });
+  line("way of the tip", { d: "M0 7H22M11 7H22", stroke: "var(--this)", "stroke-width": 1.8 });
+  draw(key.lastChild.firstChild, "path", { d: "M11 7H22", stroke: "var(--this)", "stroke-width": 5, "stroke-opacity": AFTER });
+  if (!inSpace) return;
+  keyEntry(key, room.square_words, (picture) => draw(picture, "path", { d: "M4 2H18V12H4Z", fill: "var(--after)", stroke: "var(--edge)" }));
+  element(key, "span", coarse.matches ? "swipe to turn it" : "drag to turn it");
+};
+const drawPlane = (svg) => {
+  const { structure } = state.move;
   const { width, height } = begin(svg);
   const [[left, bottom], [right, top]] = structure.corners;
-  const margin = { x: 30, top: 20, bottom: structure.in_space ? 16 : 36 }; // above the bar of a length
+  const margin = { x: 30, top: 20, bottom: 36 }; // above the bar of a length
   const scale = Math.min((width - 2 * margin.x) / (right - left || 1), (height - margin.top - margin.bottom) / (top - bottom || 1));
   const x0 = (width - scale * (right - left)) / 2;
   const y0 = margin.top + (height - margin.top - margin.bottom + scale * (top - bottom)) / 2;
   scene.at = (x, y) => [x0 + scale * (x - left), y0 - scale * (y - bottom)];
   const thick = Math.max(0.7, Math.min(1.3, Math.min(width, height) / 320));
-  const solid = structure.parts.filter(({ look }) => !(look in GROUND));
-  solid.forEach((part, k) => draw(svg, "path", { ...ROUND, d: pathOf(structure.target[k].map(([x, y]) => scene.at(x, y))), stroke: "var(--soft)", "stroke-width": part.points === 1 ? 0 : 1.2, "stroke-dasharray": "5 5", "stroke-opacity": 0.75 }));
+  structure.parts.forEach((part, k) => draw(svg, "path", { ...ROUND, d: pathOf(structure.target[k].map(([x, y]) => scene.at(x, y))), stroke: "var(--soft)", "stroke-width": part.points === 1 ? 0 : 1.2, "stroke-dasharray": "5 5", "stroke-opacity": 0.75 }));
   const grey = "var(--cycloid)";
   // the ghost's trail is wide and pale, so that both are seen where one lies on the other
   scene.ghostTrails = trailsIn(svg, grey, [[5, 0.35], [10, 0.35]]);
-  scene.ghost = bodiesIn(svg, { rigid: grey, link: grey }, thick, 0.55);
+  const ghost = bodiesIn(svg, { rigid: grey, link: grey }, thick, 0.55);
   scene.trails = trailsIn(svg, "var(--this)", [[1.8, 1], [4.5, AFTER]]);
-  scene.bodies = bodiesIn(svg, { ...GROUND, rigid: "var(--metal)", link: "var(--this)" }, thick, 1);
-  if (!structure.in_space) drawLength(svg, scale, width, height);
-  const view = byId("view");
-  view.textContent = "The motion ";
-  element(view, "span", structure.scale, "unit");
-  svg.setAttribute("aria-label", "The structure in motion: the chosen motion, the plain cycloid in grey, dashed where it shall stand");
+  const bodies = bodiesIn(svg, { rigid: "var(--metal)", link: "var(--this)" }, thick, 1);
+  drawLength(svg, scale, width, height);
+  scene.show = (now, before) => {
+    placeBodies(bodies, now);
+    placeBodies(ghost, before);
+    placeTrails(scene.trails, trails, now);
+    placeTrails(scene.ghostTrails, ghostTrails, before);
+  };
 };
 const trailsIn = (svg, colour, looks) => Array.from({ length: state.move.structure.trails }, () => looks.map(([wide, seen]) => draw(svg, "path", { ...ROUND, "stroke-linecap": "butt", stroke: colour, "stroke-width": wide, "stroke-opacity": seen })));
-const GROUND = { floor: "var(--edge)", shadow: "var(--shadow)", ground: "var(--edge)" };
-const GROUND_WIDE = { floor: 0.7, shadow: 4, ground: 0.7 };
 const bodiesIn = (svg, colours, thick, seen) => state.move.structure.parts.map(({ look, width: wide }) => draw(svg, "path", {
   ...ROUND,
-  fill: look === "floor" && look in colours ? "var(--after)" : "none",
-  stroke: colours[look] ?? "none",
-  "stroke-width": thick * wide * (GROUND_WIDE[look] ?? 1.15),
-  "stroke-opacity": look in GROUND ? 1 : seen,
+  stroke: colours[look],
+  "stroke-width": thick * wide * 1.15,
+  "stroke-opacity": seen,
 }));
 const drawLength = (svg, scale, width, height) => {
   const metres = niceStep((0.12 * width) / scale);
@@ -54,9 +81,9 @@ const placeTrails = (paths, trails, coordinates) => {
   const { times, duration, arrival } = state.move;
   const now = lastBefore(times, state.time);
   trails.forEach((trail, tip) => {
-    const end = coordinates.length - 2 * (trails.length - tip);
-    const here = [coordinates[end], coordinates[end + 1]];
-    const onScreen = (points) => pathOf(points.map(([x, y]) => scene.at(x, y)));
+    const end = coordinates.length - dimensions() * (trails.length - tip);
+    const here = [...coordinates.slice(end, end + dimensions())];
+    const onScreen = (points) => pathOf(points.map((point) => scene.at(...point)));
     const moving = trail.slice(0, Math.min(now, arrival) + 1);
     const after = state.time > duration ? [...trail.slice(arrival, now + 1), here] : [];
     paths[tip][0].setAttribute("d", onScreen(after.length ? moving : [...moving, here]));

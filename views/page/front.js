@@ -122,16 +122,17 @@ const drawKept = (plot, box) => {
   mark(plot, alive.kept, here);
   front.obstacles.push(boxAround(here, 6));
 };
+const keyEntry = (key, label, drawSign) => {
+  const span = element(key, "span");
+  const picture = draw(span, "svg", { "aria-hidden": "true", viewBox: "0 0 22 14" });
+  drawSign(picture);
+  element(span, "span", unbroken(label), label.length > 24 ? "long" : "");
+};
 const drawKey = () => {
   const { points, beside, joined, method, mark: sign, this: own } = frontMove();
   const key = byId("key");
   key.replaceChildren();
-  const entry = (label, drawSign) => {
-    const span = element(key, "span");
-    const picture = draw(span, "svg", { "aria-hidden": "true", viewBox: "0 0 22 14" });
-    drawSign(picture);
-    element(span, "span", unbroken(label), label.length > 24 ? "long" : "");
-  };
+  const entry = (label, drawSign) => keyEntry(key, label, drawSign);
   const markOf = (look, size) => (picture) => mark(picture, look, [11, 7], size);
   entry(method, joined && points.length > 1 ? (picture) => draw(picture, "path", { d: "M0 7H22", stroke: "var(--this)", "stroke-width": 2.6 }) : markOf({ mark: sign, colour: own, filled: points[0].name !== "" }));
   for (const others of beside) entry(others.label, markOf({ ...others, filled: isFilled(others) }));

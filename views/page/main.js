@@ -56,10 +56,7 @@ const showTime = () => {
   const { move, time } = state;
   const now = coordinatesAt(ofChosen(move.scores), time);
   const ghost = coordinatesAt(ofCycloid(move.scores), time);
-  placeBodies(scene.bodies, now);
-  placeBodies(scene.ghost, ghost);
-  placeTrails(scene.trails, trails, now);
-  placeTrails(scene.ghostTrails, ghostTrails, ghost);
+  scene.show(now, ghost);
   const { rows } = move.panels.deflection;
   ofChosen(rows).forEach((row, k) => swing.dots[k].setAttribute("cx", swing.x(valueAt(move.times, row, time))));
   ofCycloid(rows).forEach((row, k) => swing.ghost[k].setAttribute("cx", swing.x(valueAt(move.times, row, time))));

@@ -9,7 +9,9 @@ const lastPoint = () => frontMove().points.length - 1;
 const ofChosen = (rows) => rows[state.point];
 const ofCycloid = (rows) => rows[state.move.points.length];
 
-// Coordinates of all parts of a motion, then of its tips [m], x and y in turn, from the scores of its shapes; or the last of them alone.
+const dimensions = () => (state.move.structure.in_space ? 3 : 2);
+
+// Coordinates of all parts of a motion, then of its tips [m], x, y and in space z in turn, from the scores of its shapes; or the last of them alone.
 const coordinatesBy = (scoreOf, first = 0) => {
   const { mean, shapes } = state.move.structure;
   const sum = Float64Array.from(mean.slice(first));
@@ -22,6 +24,6 @@ const coordinatesBy = (scoreOf, first = 0) => {
 const coordinatesAt = (scores, time) => coordinatesBy((k) => valueAt(state.move.times, scores[k], time));
 const trailsOf = (scores) => {
   const { trails: count, mean } = state.move.structure;
-  const everySample = state.move.times.map((_, sample) => coordinatesBy((k) => scores[k][sample], mean.length - 2 * count));
-  return Array.from({ length: count }, (_, tip) => everySample.map((row) => [row[2 * tip], row[2 * tip + 1]]));
+  const everySample = state.move.times.map((_, sample) => coordinatesBy((k) => scores[k][sample], mean.length - dimensions() * count));
+  return Array.from({ length: count }, (_, tip) => everySample.map((row) => [...row.slice(dimensions() * tip, dimensions() * (tip + 1))]));
 };

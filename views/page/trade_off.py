@@ -38,11 +38,12 @@ from quietarm.views.page.samples import needed_samples, packed, shapes_of
 from quietarm.views.pictures.grammar import BLUE, FAINT, INK, MEANINGS, OTHERS, Look, looks
 from quietarm.views.pictures.motion import (
     Line,
-    curves,
     heading,
     limits_in_sight,
     names_of_curves,
+    short_curves,
 )
+from quietarm.views.pictures.space import ELEVATION, Room
 from quietarm.views.pictures.structure import DrawnPart, Structure, structures_of
 from quietarm.views.report.method_rows import label_of
 from quietarm.views.report.templates import templates
@@ -64,7 +65,8 @@ beside a residual window of a second."""
 _OF_THIS = ("plan", "robust plan", "search")
 """Meanings that the chosen motion can have."""
 _SCRIPTS = (
-    "numbers.js", "drawing.js", "state.js", "front.js", "arm.js", "panels.js", "main.js",
+    "numbers.js", "drawing.js", "state.js", "front.js", "arm.js", "space.js", "panels.js",
+    "main.js",
 )  # fmt: skip
 """In the order in which they need each other."""
 _ALIVE = ("dials.js", "robustness.js", "alive.js")
@@ -240,7 +242,7 @@ def shown_move(
     tolerance = 0.005
     coarsest = 0.08
     curves_of_all = {
-        name: np.array([_lines(plan, name) for plan in move.motions]) for name in quantities
+        name: np.array([short_curves(plan, name) for plan in move.motions]) for name in quantities
     }
     while True:
         times, places = _sampled_times(move, curves_of_all, tolerance)
@@ -252,15 +254,6 @@ def shown_move(
         if tolerance >= coarsest or len(json.dumps(content)) <= budget:
             return content
         tolerance *= 2
-
-
-def _lines(plan: Plan, quantity: str) -> list[Array]:
-    """Curves of a quantity in the unit that is shown; of a tip in space its distance."""
-    lines = curves(plan, quantity)
-    across = plan.task.plant.tip_lines
-    if quantity != "deflection" or across is None:
-        return lines
-    return [np.abs(across @ np.array(lines)).max(axis=0)]
 
 
 def _sampled_times(
@@ -291,17 +284,19 @@ def _structure(move: Move, times: Array, scale: float | None, tolerance: float) 
     structures = structures_of(lines, times, end, scale)
     coordinates = np.array([_coordinates(structure) for structure in structures])
     flat = coordinates.reshape(-1, coordinates.shape[-1])
-    points = flat.reshape(len(flat), -1, 2)
+    first, *_ = structures
+    in_space = move.task.plant.in_space
+    points = flat.reshape(len(flat), -1, 3 if in_space else 2)
     corners = [points.min(axis=(0, 1)), points.max(axis=(0, 1))]
     size = float(np.ptp(corners, axis=0).max()) or 1.0
     shapes = shapes_of(flat, 0.2 * tolerance * size)
     scores = shapes.scores.reshape(*coordinates.shape[:2], -1).transpose(0, 2, 1)
-    first = structures[0]
     at_the_end = replace(first, times=times[-1:]).unbent
     still = [part for part in at_the_end if part.colour != FAINT]
     return {
         "scale": first.scale_words.replace(" x ", " \u00d7 "),
-        "in_space": move.task.plant.in_space,
+        "in_space": in_space,
+        "room": _room(Room.of(structures)) if in_space else None,
         "parts": [_part(part) for part in first.bent],
         "trails": len(first.paths),
         "mean": shapes.mean.round(6).tolist(),
@@ -309,6 +304,24 @@ def _structure(move: Move, times: Array, scale: float | None, tolerance: float) 
         "scores": packed(scores),
         "target": [part.points[-1].round(6).tolist() for part in still],
         "corners": [corner.round(6).tolist() for corner in corners],
+    }
+
+
+def _room(room: Room) -> dict[str, Any]:
+    """Return where structures in space move, and from where they are seen at first."""
+    lengths = {
+        "reach": room.reach,
+        "half": room.half,
+        "floor": room.floor,
+        "square": room.square,
+        "away": room.away,
+        "seen_from": room.seen_from,
+        "elevation": ELEVATION,
+    }
+    return {
+        "middle": room.middle.round(6).tolist(),
+        **{name: round(length, 6) for name, length in lengths.items()},
+        "square_words": room.square_words,
     }
 
 
@@ -320,13 +333,13 @@ def _coordinates(structure: Structure) -> Array:
 
 
 def _part(part: DrawnPart) -> dict[str, Any]:
-    points = part.points.shape[1]
-    look = "rigid" if part.colour == INK else "link"
-    if part.colour == FAINT:
-        is_closed = np.array_equal(part.points[:, 0], part.points[:, -1])
-        line = 2  # points of a straight one, as a post
-        look = "floor" if is_closed else "shadow" if points > line else "ground"
-    return {"points": points, "look": look, "width": part.width}
+    looks_of = {INK: "rigid", FAINT: "ground"}
+    return {
+        "points": part.points.shape[1],
+        "look": looks_of.get(part.colour, "link"),
+        "width": part.width,
+        "radius": round(part.radius, 6),
+    }
 
 
 def _panel(move: Move, quantity: str, values: Array) -> dict[str, Any]:

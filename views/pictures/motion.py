@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -141,8 +141,20 @@ def _drawn() -> list[str]:
     return [*drawn_quantities(), *known_panels(drawn_quantities())]
 
 
-def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = None) -> Axes:
+def draw_briefly(motions: Motions, quantity: str, ax: Axes) -> Axes:
+    """Draw a quantity as `draw_quantity`, of a tip that moves in space its distance alone."""
+    return _draw(lines_of(motions), quantity, axes_or_new(ax), curves_of=short_curves)
+
+
+def _draw(
+    lines: Sequence[Line],
+    quantity: str,
+    ax: Axes,
+    curve: int | None = None,
+    curves_of: Callable[[Plan | Floor, str], list[Array]] | None = None,
+) -> Axes:
     """Draw all curves of a quantity, or the one of a joint or a tip by its number."""
+    curves_of = curves_of or curves
     if quantity not in drawn_quantities():
         return _draw_own(lines, known_panels(drawn_quantities())[quantity], ax)
     plant = lines[0].plan.task.plant
@@ -150,7 +162,7 @@ def _draw(lines: Sequence[Line], quantity: str, ax: Axes, curve: int | None = No
     title = heading_of_plant(plant, quantity, curve)
     for line in lines:
         other_styles = _other_styles(line)
-        for i, values in enumerate(curves(line.plan, quantity)):
+        for i, values in enumerate(curves_of(line.plan, quantity)):
             if curve not in (None, i):
                 continue
             alone = i == 0 or curve is not None
@@ -228,6 +240,15 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
         columns = angles if quantity == "angle" else [at.power]
     scale = scale_of(quantity, motion.task.plant.tip_unit)
     return [scale * np.asarray(column) for column in columns]
+
+
+def short_curves(motion: Plan | Floor, quantity: str) -> list[Array]:
+    """The curves of a quantity; of a tip that moves in space one, its distance from rest."""
+    lines = curves(motion, quantity)
+    across = motion.task.plant.tip_lines
+    if quantity != "deflection" or across is None:
+        return lines
+    return [np.abs(across @ np.array(lines)).max(axis=0)]
 
 
 def names_of_curves(plant: Plant, quantity: str) -> list[str]:

@@ -24,11 +24,15 @@ _DOT = np.array([[0.0, 0.0], [1e-6, 0.0]])
 
 
 class DrawnPart(NamedTuple):
-    """A line of a structure: its points, shape (frames, points, 2) [m], and its look."""
+    """A line of a structure: its points, shape (frames, points, 2 or 3) [m], and its look."""
 
     points: Array
     colour: str
     width: float
+    radius: float = 0.0
+    """In space [m]."""
+    tip: bool = False
+    """Whether its last point is a tip."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +61,7 @@ class Structure:
 
     @property
     def paths(self) -> list[Array]:
-        """Path on which each tip is drawn, shape (frames, 2) [m]."""
+        """Path on which each tip is drawn, shape (frames, 2 or 3) [m]."""
         first = self._bent_bodies[0]
         return [part.points[:, -1] for part, body in zip(self.bent, first) if body.tip]
 
@@ -69,8 +73,9 @@ class Structure:
 
     @property
     def corners(self) -> Array:
-        """Least and largest coordinates of all that is drawn [m], shape (2, 2)."""
-        points = np.vstack([part.points.reshape(-1, 2) for part in (*self.bent, *self.unbent)])
+        """Least and largest coordinates of all that is drawn [m], shape (2, 2 or 3)."""
+        parts = [*self.bent, *self.unbent]
+        points = np.vstack([part.points.reshape(-1, part.points.shape[-1]) for part in parts])
         return np.array([points.min(axis=0), points.max(axis=0)])
 
     @property
@@ -103,18 +108,21 @@ class Structure:
         ]
 
     def _parts(self, bodies_of_frames: list[list[Body]]) -> list[DrawnPart]:
+        plant = self.line.plan.task.plant
         parts = list[DrawnPart]()
         for bodies in zip(*bodies_of_frames):
             points = np.array([bent.points for bent in bodies])
             body = bodies[0]
             if body.ground:
-                parts.append(DrawnPart(points, FAINT, 1.5))
+                parts.append(DrawnPart(points, FAINT, 1.5, body.radius))
                 continue
-            if points.shape[1] == 1:
+            if points.shape[1] == 1 and not plant.in_space:
                 parts.append(DrawnPart(points + _DOT, INK, 16.0))
                 continue
             colour = INK if body.rigid and not body.tip else self.line.colour
-            parts.append(DrawnPart(points, colour, 9.0 if body.rigid else 5.0))
+            parts.append(
+                DrawnPart(points, colour, 9.0 if body.rigid else 5.0, body.radius, body.tip)
+            )
         return parts
 
 

@@ -25,7 +25,7 @@ from quietarm.models.robot.elastic.hinges import (
     masses_of_chain,
 )
 from quietarm.models.robot.elastic.spectra import spectrum
-from quietarm.models.robot.frames import Frame, rotation_about
+from quietarm.models.robot.frames import Frame, rotation_about, shortest_turn
 from quietarm.models.robot.urdf.read_urdf import Inertia
 
 USUAL_HINGES = 5
@@ -177,7 +177,7 @@ class Beam:
     def frame(self) -> Frame:
         """Frame of the beam in that of its link: it lies along z."""
         rolled = rotation_about(np.array(_ALONG_Z), self.roll)
-        return Frame(_shortest_turn(np.array(self.direction)) @ rolled, np.array(self.offset))
+        return Frame(shortest_turn(np.array(self.direction)) @ rolled, np.array(self.offset))
 
     @property
     def stiffness(self) -> tuple[float, float]:
@@ -342,14 +342,6 @@ def _vector(name: str, values: Any, unit: str) -> tuple[float, float, float]:
 
 _MOST = 1e3
 """Of a number of direction and offset [m]: beyond, a unit was mistaken."""
-
-
-def _shortest_turn(direction: Array) -> Array:
-    """Return the rotation that turns z into a direction; of -z about x."""
-    x, y, z = direction / np.linalg.norm(direction)
-    across = math.hypot(x, y)
-    axis = np.array([-y, x, 0.0]) / across if across > 0 else np.array([1.0, 0.0, 0.0])
-    return rotation_about(axis, math.atan2(across, z))
 
 
 def _pair(stiffness: float | Sequence[float]) -> tuple[float, float]:
