@@ -228,17 +228,27 @@ def _base(entry: Any, what: str) -> Base:
     return Base(**given)
 
 
-def _measured(entry: Any, what: str) -> Measured:
+def _measured(entry: Any, what: str) -> Measured | tuple[Measured, ...]:
+    """A frequency that was measured, or a list of them."""
+    if not isinstance(entry, list):
+        return _measurement(entry, what)
+    return tuple(_measurement(one, f"{number} of {what}") for number, one in enumerate(entry, 1))
+
+
+def _measurement(entry: Any, what: str) -> Measured:
     readers: dict[str, Read] = {
         "frequency": _quantity("rad/s"),
         "at": partial(_several, unit="rad"),
+        "mode": lambda value, _: value,
+        "damping": _quantity("-"),
+        "within": _quantity("-"),
     }
     given = _table(entry, what, readers)
     frequency = entry.get("frequency")
     if isinstance(frequency, int | float):
-        raise ValueError(f"measured frequency is {frequency}; say its unit, as {frequency:g}Hz")
-    if given.keys() != readers.keys():
-        raise ValueError("measured needs a frequency, as 3.05Hz, and at, the joints' positions")
+        raise ValueError(f"{what} frequency is {frequency}; say its unit, as {frequency:g}Hz")
+    if not given.keys() >= {"frequency", "at"} or not isinstance(given["at"], tuple):
+        raise ValueError(f"{what} needs a frequency, as 3.05Hz, and at, the joints' positions")
     return Measured(**given)
 
 
