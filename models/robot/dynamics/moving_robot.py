@@ -47,7 +47,7 @@ class MovingRobot(RobotParts):
 
     @cached_property
     def fit(self) -> MeasuredFit | None:
-        """What measured frequencies tell of springs and load; None where none was measured."""
+        """Springs and load as measured frequencies tell them; None where none was measured."""
         if not self.measurements:
             return None
         load = (self.stated_payload, self.of_one_kilogram) if self.stated_payload else None
