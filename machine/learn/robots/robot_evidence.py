@@ -165,6 +165,11 @@ def _checked(plan: Plan, recordings: Any) -> list[RobotRecording]:
                     f"{recording.name} has {values.shape[1]} columns of {name}, and {plant.name} "
                     f"{count} {words}, {', '.join(names)}; give one of each, in this order"
                 )
+        if recording.swinging[0] == "tip":
+            raise ValueError(
+                f"{recording.name} has no torques and no acceleration, by which moves are learned; "
+                "give one"
+            )
         refuse_constant(recording.name, {name: getattr(recording, name) for name in wanted})
     return checked
 
