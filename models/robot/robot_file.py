@@ -31,7 +31,7 @@ Read = Callable[[Any, str], Any]
 ReadOfJoint = Callable[[Any, str, str], Any]
 """(entry of the file, what it is in words, the joint's kind) -> its value."""
 OF_URDF = "urdf"
-"""In place of a file of limits: those of the URDF."""
+"""The entry that names the URDF; in place of a file of limits: those of the URDF."""
 
 
 def read_robot(path: str | Path) -> dict[str, Any]:
@@ -43,6 +43,15 @@ def read_robot(path: str | Path) -> dict[str, Any]:
         return _arguments(document, Path(path).parent)
     except ValueError as error:
         raise ValueError(f"robot file {path}: {error}") from None
+
+
+def is_robot_file(path: str | Path) -> bool:
+    """Return whether a file in YAML is a robot's, by its entry `urdf`, if it can be read."""
+    try:
+        document = read_yaml(path, "robot file")
+    except ValueError:
+        return False
+    return isinstance(document, dict) and OF_URDF in document
 
 
 def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
