@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
-from mujoco_robots import GRAVITY, FlexibleRobot, Truth, motion_of
+from mujoco_robots import FlexibleRobot, Truth, motion_of
 from robots import (
     BAR,
     PANDA_END,
@@ -151,7 +151,7 @@ def run(truth: Truth, plan: qa.Plan) -> Run:
         springs, torque = truth.accelerations(q, v, a, state[:count], state[count:])
         torques.append(torque)
         positions.append(q)
-        acceleration.append(_felt(truth, q, v, a, state[:count], state[count:], springs))
+        acceleration.append(truth.felt(q, v, a, state[:count], state[count:], springs))
     end = motion(duration)[0]
     rest = truth.tip_at(end, truth.sag(end))
     away = [np.linalg.norm(truth.tip_at(end, s[:count]) - rest) for s in later.T]
@@ -163,18 +163,6 @@ def still_after(motion: Callable[[float], Any], duration: float) -> Callable[[fl
     end = motion(duration)[0]
     still = (end, np.zeros_like(end), np.zeros_like(end))
     return lambda at: motion(at) if at < duration else still
-
-
-def _felt(truth: Truth, q: Array, v: Array, a: Array, p: Array, dp: Array, ddp: Array) -> Array:
-    """Return what an accelerometer at the tip feels along its own axes, by differences in time."""
-    step = 1e-4
-
-    def tip(at: float) -> Array:
-        return truth.tip_at(q + v * at + a * at**2 / 2, p + dp * at + ddp * at**2 / 2)
-
-    ahead, behind, here = tip(step), tip(-step), tip(0.0)
-    rotation = truth.data.xmat[truth.body].reshape(3, 3)
-    return rotation.T @ ((ahead - 2 * here + behind) / step**2 - np.array(GRAVITY))
 
 
 def recorded(done: Run, signal: str, plant: Any, random: np.random.Generator) -> RobotRecording:

@@ -1,8 +1,8 @@
 """Recordings of a machine, and the plant that they tell of.
 
 Rooms: `tables` reads files of numbers as other programs write them, `recordings` are what was
-measured, mended, `identify` finds a plant's parameters from them, and `learn` the next plan from
-those of an executed one.
+measured, mended, `identify` finds a plant's parameters from them, `held_robots` springs and load of
+a robot whose joints are held, and `learn` the next plan from recordings of an executed one.
 """
 
 from quietarm.loading import attach

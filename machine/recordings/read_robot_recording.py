@@ -17,7 +17,6 @@ from quietarm.machine.recordings.read_recording import Columns, tick_of
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.machine.tables.column_units import split_name
 from quietarm.machine.tables.table import Table, read_table, unused_in_words
-from quietarm.models import Plant
 from quietarm.models.number_checks import quoted
 from quietarm.models.robot.text_files import read_text
 from quietarm.ocp import FileFormatError
@@ -29,7 +28,9 @@ _CALLED = {
     "positions": ("position", "angle", "q"),
 }
 """What columns of all joints are called, where no name is given."""
-_OPTIONS = {"torques": "torque", "positions": "angle", "acceleration": "acceleration"}
+_OPTIONS = {
+    "torques": "torque", "positions": "angle", "acceleration": "acceleration", "tip": "tip",
+}  # fmt: skip
 """The option that names the columns of each signal."""
 _FIELDS = {"torques": "effort", "positions": "position"}
 """Of a JointState."""
@@ -44,32 +45,32 @@ class ReadRobotRecording(NamedTuple):
 
 
 def read_robot_recording(
-    path: Path, columns: Columns, name: str, plant: Plant
+    path: Path, columns: Columns, name: str, joints: Sequence[str]
 ) -> ReadRobotRecording:
-    """Read a recording of a robot along a path.
+    """Read a recording of a robot by the names of its driven joints.
 
     `columns` names what all columns of torques and of angles begin with, and each of the
     accelerations; those of joints that are not named are found by the joints' names.
     """
     if path.suffix.lower() in _MESSAGES:
-        return _of_messages(path, columns, name, plant)
+        return _of_messages(path, columns, name, joints)
     table = read_table(path)
     headings = dict[str, list[str]]()
     for signal, option in _OPTIONS.items():
         given = [*columns.names.get(option, ())]
-        named = signal == "acceleration"
-        found = given if named else _headings(table, signal, given, plant)
+        named = signal in ("acceleration", "tip")
+        found = given if named else _headings(table, signal, given, joints)
         if found:
             headings[signal] = found
-    if not headings.keys() & {"torques", "acceleration"}:
+    if not headings.keys() & {"torques", "acceleration", "tip"}:
         raise FileFormatError(
             f"{path} has no column of torques by the joints' names, such as "
-            f"{plant.joint_names[0]}_effort; name what they begin with by --torque, as tau_ext of "
+            f"{joints[0]}_effort; name what they begin with by --torque, as tau_ext of "
             "tau_ext[4], or those of an accelerometer by --acceleration"
         )
     signals = {
         signal: np.column_stack([
-            table.find(heading).values * _factor(table, heading, _OPTIONS[signal], columns, plant)
+            table.find(heading).values * _factor(table, heading, _OPTIONS[signal], columns, joints)
             for heading in found
         ])
         for signal, found in headings.items()
@@ -102,22 +103,21 @@ def _recording(
 
 
 def _factor(
-    table: Table, heading: str, quantity: str, columns: Columns, plant: Plant | None = None
+    table: Table, heading: str, quantity: str, columns: Columns, joints: Sequence[str] = ()
 ) -> float:
     """Return the factor of a column to SI units; the name of a joint at its end is no unit."""
     unit = columns.units.get(quantity, "")
-    ends_in_joint = plant is not None and heading.strip().endswith(plant.joint_names)
+    ends_in_joint = heading.strip().endswith(tuple(joints))
     if ends_in_joint and not unit and quantity not in columns.scales:
         return 1.0
     return table.factor(heading, quantity, unit, columns.scales.get(quantity), option=quantity)
 
 
-def _headings(table: Table, signal: str, given: Sequence[str], plant: Plant) -> list[str]:
-    """The columns of all joints, in the plant's order; none where there are none.
+def _headings(table: Table, signal: str, given: Sequence[str], joints: Sequence[str]) -> list[str]:
+    """The columns of all joints, in the order of the robot; none where there are none.
 
     FileFormatError where a name was given and does not stand for all of them.
     """
-    joints = plant.joint_names
     names = {_plain(column.name): column.name for column in table.columns}
     names |= {column.name.strip().lower(): column.name for column in table.columns}
     for front in given or _CALLED[signal]:
@@ -150,9 +150,10 @@ def _plain(name: str) -> str:
     return split_name(name)[0].strip().lower()
 
 
-def _of_messages(path: Path, columns: Columns, name: str, plant: Plant) -> ReadRobotRecording:
+def _of_messages(
+    path: Path, columns: Columns, name: str, joints: Sequence[str]
+) -> ReadRobotRecording:
     """The JointState messages of a file, as `ros2 topic echo` writes them."""
-    joints = plant.joint_names
     stamps = list[float]()
     rows: dict[str, list[list[float]]] = {signal: [] for signal in _FIELDS}
     passed = 0

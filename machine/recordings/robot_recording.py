@@ -1,4 +1,4 @@
-"""Recordings of a robot's move: torques, positions, and the tip's acceleration.
+"""Recordings of a robot: torques, positions, and the tip's acceleration or displacement.
 
 A controller's log has gaps, a first row that is not of the move, and a coarse clock. Times are
 mended as those of a `Recording`.
@@ -6,7 +6,7 @@ mended as those of a `Recording`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, noise_of
 
 Array = NDArray[np.float64]
-SIGNALS = ("torques", "acceleration", "positions")
+SIGNALS = ("torques", "acceleration", "positions", "tip")
 """What may be recorded, a column each joint or axis."""
 
 
@@ -39,11 +39,14 @@ class RobotRecording:
         What messages call it.
     tick : float, optional
         What the clock counts in [s], as of `Recording`.
+    tip : array, shape (rows, axes), optional
+        Displacement of the tip along its own axes [m], of a robot whose joints are held.
 
     Raises
     ------
     ValueError
-        When neither torques nor accelerations are given, rows do not fit, or the clock goes back.
+        When no torques, accelerations or displacements are given, rows do not fit, or the clock
+        goes back.
     """
 
     example = "a recording of a robot, such as RobotRecording(time, torques=torques)"
@@ -54,12 +57,13 @@ class RobotRecording:
     positions: Array | None = None
     name: str = "the recording"
     tick: float = 0.0
+    tip: Array | None = None
     notes: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
         given = {name: v for name in SIGNALS if (v := getattr(self, name)) is not None}
         if not given.keys() - {"positions"}:
-            raise ValueError(f"{self.name} has no torques and no acceleration; give one")
+            raise ValueError(f"{self.name} has no torques, acceleration or tip; give one")
         columns = {name: _columns(self.name, name, values) for name, values in given.items()}
         lengths = {name: len(values) for name, values in columns.items()}
         rows = np.size(self.time)
@@ -88,11 +92,21 @@ class RobotRecording:
 
     @property
     def swinging(self) -> tuple[str, Array]:
-        """Signal by which the swing is read, and its columns: acceleration before torques."""
+        """Signal by which the swing is read, and its columns: the tip's before torques."""
         if self.acceleration is not None:
             return "acceleration", self.acceleration
+        if self.tip is not None:
+            return "tip", self.tip
         assert self.torques is not None  # one of both is given
         return "torques", self.torques
+
+    def part(self, begin: float, end: float) -> RobotRecording:
+        """Return the rows of some time [s], as a recording."""
+        rows = (self.time >= begin) & (self.time <= end)
+        signals = {
+            name: values[rows] for name in SIGNALS if (values := getattr(self, name)) is not None
+        }
+        return replace(self, time=self.time[rows], **signals)
 
     @property
     def step(self) -> float:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -37,6 +38,8 @@ from quietarm.models.robot.urdf.urdf_text import dynamics_of
 
 _MOST_MOVING = 100
 """Joints, whose equations are written in two seconds."""
+_SAME = 1e-3
+"""Positions of one posture differ by less [rad or m]."""
 _USUAL_MODES = 2
 """That are followed where the file does not say how many."""
 
@@ -231,14 +234,42 @@ class CheckedRobot(MovingRobot):
     def _check_measured(self) -> None:
         if self.measured is None:
             return
-        frequency = positive("measured frequency", self.measured.frequency, "rad/s")
-        at = tuple(finite("a position of measured", x, "rad") for x in self.measured.at)
+        several = not isinstance(self.measured, Measured)
+        given = tuple(self.measured) if several else (self.measured,)
+        if not given:
+            raise ValueError("measured is an empty list; give frequencies, or leave it out")
+        names = [f"{number} of measured" for number in range(1, len(given) + 1)]
+        checked = [
+            self._measurement(one, name if several else "measured")
+            for one, name in zip(given, names)
+        ]
+        _refuse_contradictions(checked)
+        self._set("measured", tuple(checked) if several else checked[0])
+
+    def _measurement(self, one: Measured, what: str) -> Measured:
+        """A measured frequency whose numbers are in range, at positions of all joints."""
+        if not isinstance(one, Measured):
+            raise TypeError(f"{what} is {quoted(one)}; give Measured(frequency, at)")
+        frequency = positive(f"{what} frequency", one.frequency, "rad/s")
+        at = tuple(finite(f"a position of {what}", x, "rad") for x in one.at)
         if len(at) != len(self.joints):
             raise ValueError(
-                f"measured has {len(at)} positions and the robot {len(self.joints)} joints; give "
+                f"{what} has {len(at)} positions and the robot {len(self.joints)} joints; give "
                 "one of each"
             )
-        self._set("measured", Measured(frequency, at))
+        count = len(self.unscaled.sprung)
+        mode = whole(f"mode of {what}", one.mode, 1, max(count, 1))
+        damping = one.damping
+        if damping is not None:
+            damping = positive(f"damping of {what}", damping)
+            if damping >= 1:
+                raise ValueError(
+                    f"damping of {what} is {100 * damping:g} %; give a ratio below 1, as 0.5%"
+                )
+        within = positive(f"within of {what}", one.within)
+        if within >= 1:
+            raise ValueError(f"within of {what} is {100 * within:g} %; give a share, as 0.5%")
+        return Measured(frequency, at, mode, damping, within)
 
     def _check_inertias(self) -> None:
         """Every driven joint and every spring moves a mass."""
@@ -261,6 +292,21 @@ class CheckedRobot(MovingRobot):
                 raise ValueError(
                     f"joint {quoted(name)} moves no mass; give the links beyond it an <inertial> "
                     "in the URDF"
+                )
+
+
+def _refuse_contradictions(measured: Sequence[Measured]) -> None:
+    """Refuse two frequencies of one mode at one posture that differ by more than both may."""
+    for later, two in enumerate(measured):
+        for one in measured[:later]:
+            apart = abs(math.log(two.frequency / one.frequency))
+            same = one.mode == two.mode and np.allclose(one.at, two.at, rtol=0.0, atol=_SAME)
+            if same and apart > one.within + two.within:
+                raise ValueError(
+                    f"measured has mode {one.mode} at one posture with "
+                    f"{one.frequency / math.tau:.5g} Hz and with {two.frequency / math.tau:.5g} "
+                    "Hz; leave out the one that is wrong, or state how exact they are, as "
+                    "within: 2%"
                 )
 
 

@@ -109,8 +109,9 @@ class Robot(CheckedRobot):
         excited one leaves on the path.
     limits : mapping, optional
         Limits by quantity and joint, such as {"speed": {"elbow_joint": 3.0}}.
-    measured : Measured, optional
-        A measured frequency, to which all springs are scaled.
+    measured : Measured or sequence of Measured, optional
+        Measured frequencies, to which all springs are scaled; several that tell the mass at the end
+        of the beam from the springs change it as well.
     positions : mapping of str to (float, float)
         Ranges of driven joints that are narrower than the URDF's [rad or m].
     remarks : sequence of Note
@@ -302,7 +303,7 @@ class Robot(CheckedRobot):
         return f" (with {' and '.join(names)}, following it)" if names else ""
 
 
-_OF_ALL_PARTS = ("unscaled", "mechanism", "dynamics", "of_one_kilogram", "digest")
+_OF_ALL_PARTS = ("unscaled", "mechanism", "dynamics", "fit", "of_one_kilogram", "digest")
 """What a robot has computed from its beam as well."""
 
 

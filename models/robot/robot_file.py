@@ -31,7 +31,7 @@ Read = Callable[[Any, str], Any]
 ReadOfJoint = Callable[[Any, str, str], Any]
 """(entry of the file, what it is in words, the joint's kind) -> its value."""
 OF_URDF = "urdf"
-"""In place of a file of limits: those of the URDF."""
+"""The entry that names the URDF; in place of a file of limits: those of the URDF."""
 
 
 def read_robot(path: str | Path) -> dict[str, Any]:
@@ -43,6 +43,15 @@ def read_robot(path: str | Path) -> dict[str, Any]:
         return _arguments(document, Path(path).parent)
     except ValueError as error:
         raise ValueError(f"robot file {path}: {error}") from None
+
+
+def is_robot_file(path: str | Path) -> bool:
+    """Return whether a file in YAML is a robot's, by its entry `urdf`, if it can be read."""
+    try:
+        document = read_yaml(path, "robot file")
+    except ValueError:
+        return False
+    return isinstance(document, dict) and OF_URDF in document
 
 
 def _arguments(document: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -228,21 +237,27 @@ def _base(entry: Any, what: str) -> Base:
     return Base(**given)
 
 
-def _measured(entry: Any, what: str) -> Measured:
+def _measured(entry: Any, what: str) -> Measured | tuple[Measured, ...]:
+    """A frequency that was measured, or a list of them."""
+    if not isinstance(entry, list):
+        return _measurement(entry, what)
+    return tuple(_measurement(one, f"{number} of {what}") for number, one in enumerate(entry, 1))
+
+
+def _measurement(entry: Any, what: str) -> Measured:
     readers: dict[str, Read] = {
         "frequency": _quantity("rad/s"),
         "at": partial(_several, unit="rad"),
+        "mode": lambda value, _: value,
+        "damping": _quantity("-"),
+        "within": _quantity("-"),
     }
     given = _table(entry, what, readers)
     frequency = entry.get("frequency")
     if isinstance(frequency, int | float):
-        raise ValueError(
-            f"measured frequency is {frequency}; say its unit, such as {frequency:g}Hz"
-        )
-    if given.keys() != readers.keys():
-        raise ValueError(
-            "measured needs a frequency, such as 3.05Hz, and at, the joints' positions"
-        )
+        raise ValueError(f"{what} frequency is {frequency}; say its unit, such as {frequency:g}Hz")
+    if not given.keys() >= {"frequency", "at"} or not isinstance(given["at"], tuple):
+        raise ValueError(f"{what} needs a frequency, such as 3.05Hz, and at, the joints' positions")
     return Measured(**given)
 
 

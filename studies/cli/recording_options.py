@@ -66,24 +66,32 @@ def read_recordings(given: Given, paths: Sequence[Path], plant: Plant) -> list[R
     return [read_recording(path, columns, name) for path, name in _named(paths)]
 
 
-def read_robot_recordings(
-    given: Given, paths: Sequence[Path], plant: Plant
-) -> list[ReadRobotRecording]:
-    """The recordings of a robot along a path, by the joints' names or what columns begin with."""
+def read_robot_moves(given: Given, paths: Sequence[Path], plant: Plant) -> list[ReadRobotRecording]:
+    """The recordings of a robot's moves along a path."""
     if given.tip:
         raise click.UsageError(
             "--tip is for plants of one joint; of a robot give the torques of its joints, by "
             "--torque, or an accelerometer at the tip, by --acceleration"
         )
+    return read_robot_recordings(given, paths, plant.joint_names, plant.joint)
+
+
+def read_robot_recordings(
+    given: Given, paths: Sequence[Path], joints: Sequence[str], kind: str
+) -> list[ReadRobotRecording]:
+    """The recordings of a robot, by its joints' names or what columns begin with.
+
+    `kind` is that of the joints, rotary, linear or mixed.
+    """
     if given.rate and given.time:
         raise click.UsageError("--rate is for files without a column of the time; leave --time out")
     names = {
         quantity: [column] if isinstance(column, str) else list(column or ())
-        for quantity, column in given.pick("time", "angle", "acceleration", "torque").items()
+        for quantity, column in given.pick("time", "angle", "tip", "acceleration", "torque").items()
     }
     scales = once(chain.from_iterable(given.scales), "--scale ")
-    columns = Columns(names, given.units or {}, scales, given.rate, plant.joint)
-    return [read_robot_recording(path, columns, name, plant) for path, name in _named(paths)]
+    columns = Columns(names, given.units or {}, scales, given.rate, kind)
+    return [read_robot_recording(path, columns, name, joints) for path, name in _named(paths)]
 
 
 def _named(paths: Sequence[Path]) -> list[tuple[Path, str]]:

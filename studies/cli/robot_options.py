@@ -54,8 +54,9 @@ def path_of(given: Given, robot: Robot) -> GeometricPath | None:
     given.refuse(["free_orientation", "link"], "is for --line-to and --line-by")
     if not (given.typed("start") and given.typed("target")):
         return None
-    ends = [_positions(given.start, "--start", robot), _positions(given.target, "--target", robot)]
-    return GeometricPath.line(*ends, joints=robot.joints)
+    start = positions_typed(given.start, "--start", robot)
+    target = positions_typed(given.target, "--target", robot)
+    return GeometricPath.line(start, target, joints=robot.joints)
 
 
 def _waypoints(given: Given) -> tuple[int, int] | None:
@@ -112,7 +113,7 @@ def _line_in_space(given: Given, robot: Robot) -> GeometricPath:
         )
     return GeometricPath.cartesian_line(
         robot,
-        _positions(given.start, "--start", robot),
+        positions_typed(given.start, "--start", robot),
         to=_numbers(given.line_to, "--line-to", (3, 6), "x,y,z or x,y,z,roll,pitch,yaw"),
         by=_numbers(given.line_by, "--line-by", (3,), "x,y,z"),
         link=given.link,
@@ -148,7 +149,7 @@ def _following_words(robot: Robot) -> str:
     return f" ({', '.join(names)})" if names else ""
 
 
-def _positions(text: str, option: str, robot: Robot) -> list[float]:
+def positions_typed(text: str, option: str, robot: Robot) -> list[float]:
     """A position of every joint: ``0,-80deg,97deg``."""
     words = text.split(",")
     if len(words) != len(robot.joints):

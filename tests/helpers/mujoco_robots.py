@@ -199,6 +199,56 @@ class Truth:
         energy = np.trapezoid(np.array(powers), times, axis=0).sum()
         return max(away), energy, np.array(torques).max(axis=0)
 
+    def ring_down(self, q, force, times):
+        """Let go of a tip that a force [N] bends, with the joints held at q.
+
+        Returns torques of the driven joints, and what an accelerometer at the tip feels along its
+        own axes, a row a time.
+        """
+        count = len(self.sprung)
+        sag = self.sag(q)
+        levers = np.array([
+            (self.tip_at(q, sag + step) - self.tip_at(q, sag - step)) / 2e-6
+            for step in 1e-6 * np.eye(count)
+        ])  # fmt: skip
+        bent = sag + levers @ force / self.stiffness
+        still = (q, np.zeros_like(q), np.zeros_like(q))
+        states = self.followed(lambda _: still, times, np.concatenate([bent, np.zeros(count)]))
+        torques, felt = [], []
+        for state in states.T:
+            p, dp = state[:count], state[count:]
+            springs, torque = self.accelerations(*still, p, dp)
+            torques.append(torque)
+            felt.append(self.felt(*still, p, dp, springs))
+        return np.array(torques), np.array(felt)
+
+    def held_modes(self, q):
+        """Return frequencies [Hz] and damping ratios with the joints held, by small deviations."""
+        sag = self.sag(q)
+        slopes = np.array([
+            (self._excess(q, sag + step) - self._excess(q, sag - step)) / 2e-6
+            for step in 1e-6 * np.eye(len(sag))
+        ])  # fmt: skip
+        still = np.zeros(self.model.nv)
+        masses, _ = self._dynamics(self._positions(q, sag), still)
+        inverse = np.linalg.inv(masses[np.ix_(self.sprung, self.sprung)])
+        nothing, one = np.zeros_like(slopes), np.eye(len(sag))
+        below = np.hstack([-inverse @ (slopes + slopes.T) / 2, -inverse @ np.diag(self.damping)])
+        values = np.linalg.eigvals(np.vstack([np.hstack([nothing, one]), below]))
+        above = sorted(values[values.imag > 0], key=abs)
+        return np.abs(above) / (2 * np.pi), -np.real(above) / np.abs(above)
+
+    def felt(self, q, v, a, p, dp, ddp):
+        """Return what an accelerometer at the tip feels, by differences in time [m/s^2]."""
+        step = 1e-4
+
+        def tip(at):
+            return self.tip_at(q + v * at + a * at**2 / 2, p + dp * at + ddp * at**2 / 2)
+
+        ahead, behind, here = tip(step), tip(-step), tip(0.0)
+        rotation = self.data.xmat[self.body].reshape(3, 3)
+        return rotation.T @ ((ahead - 2 * here + behind) / step**2 - np.array(GRAVITY))
+
     def sag(self, q):
         """The springs' angles at rest, by Newton with differences."""
         p = np.zeros(len(self.sprung))

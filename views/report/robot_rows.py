@@ -155,9 +155,28 @@ def _spring_rows(robot: Robot) -> list[Row]:
         rows.append(
             ("base", f"{stiffness} N m/rad, {robot.base.height:g} m below {robot.description.root}")
         )
-    if robot.measured is not None:
-        rows.append(("springs scaled to", f"{robot.measured.frequency / tau:.5g} Hz, as measured"))
-    return rows
+    return [*rows, *_measured_rows(robot)]
+
+
+def _measured_rows(robot: Robot) -> list[Row]:
+    """Springs, and the load, as measured frequencies tell them, and how far these are met."""
+    measured, fit = robot.measurements, robot.fit
+    if fit is None:
+        return []
+    if len(measured) == 1:
+        return [("springs scaled to", f"{measured[0].frequency / tau:.5g} Hz, as measured")]
+    load = "; the load as stated: these frequencies do not tell it from the springs"
+    if fit.tells_payload:
+        unsure = f"{100 * fit.unsure[1]:.2g} %"
+        load = f", {robot.payload:.4g} kg at the end of the beam (+-{unsure})"
+    elif not robot.payload:
+        load = ""
+    left = ", ".join(
+        f"{one.frequency / tau:.4g} Hz {100 * misfit:+.2g} %"
+        for one, misfit in zip(measured, fit.misfits)
+    )
+    springs = f"springs {fit.stiffness:.4g} times as stiff (+-{100 * fit.unsure[0]:.2g} %)"
+    return [("measured", f"{springs}{load}; misfit {left}")]
 
 
 def _limit_rows(robot: Robot) -> list[Row]:

@@ -34,7 +34,8 @@ from quietarm.machine.learn.robots.robot_swing import (
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models import Plant
-from quietarm.models.robot import Measured, RobotOnPath
+from quietarm.models.robot import Measured, Robot, RobotOnPath
+from quietarm.models.robot.dynamics.measured_fit import damping_ratios
 from quietarm.ocp.checks import instance, not_negative, several
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.executed import MoveHistory
@@ -164,6 +165,11 @@ def _checked(plan: Plan, recordings: Any) -> list[RobotRecording]:
                     f"{recording.name} has {values.shape[1]} columns of {name}, and {plant.name} "
                     f"{count} {words}, {', '.join(names)}; give one of each, in this order"
                 )
+        if recording.swinging[0] == "tip":
+            raise ValueError(
+                f"{recording.name} has no torques and no acceleration, by which moves are learned; "
+                "give one"
+            )
         refuse_constant(recording.name, {name: getattr(recording, name) for name in wanted})
     return checked
 
@@ -397,15 +403,25 @@ class RobotEvidence(Evidence):
         if turned:
             remarks.append(turned)
         if self.changed and isinstance(self.plant, RobotOnPath):
-            measured = self.plant.robot.measured
-            assert measured is not None  # by it the springs are scaled
+            (measured,) = self.plant.robot.measurements  # by it the springs are scaled
             places = ", ".join(f"{place:.5g}" for place in measured.at)
             hertz = measured.frequency / (2 * np.pi)
+            ratio = "" if measured.damping is None else f", damping: {measured.damping:.3g}"
             remarks.append(
                 "for other moves, in the robot's file: measured: "
-                f"{{frequency: {hertz:.4g}Hz, at: [{places}]}}"
+                f"{{frequency: {hertz:.4g}Hz, at: [{places}]{ratio}}}{self._load_told}"
             )
         return remarks
+
+    @property
+    def _load_told(self) -> str:
+        """Words on the load of a robot whose measured frequencies told another than its file's."""
+        plant = self._plan.task.plant
+        assert isinstance(plant, RobotOnPath)
+        robot = plant.robot
+        if robot.payload == robot.stated_payload:
+            return ""
+        return f", and tip_mass: {robot.payload:.4g} of the beam"
 
     @property
     def _turned(self) -> str:
@@ -431,8 +447,17 @@ def _with_frequency(plan: Plan, factor: float) -> Plant:
     Its robot's springs are scaled, so that no multiple is beyond its tables.
     """
     plant: Any = plan.task.plant
-    robot = plant.robot
+    robot: Robot = plant.robot
     place = tuple(plant.path(plan.task.target).tolist())
     before = float(robot.frequencies(place)[0]) * plant.stiffness**0.5
-    measured = Measured(before * factor, place)
+    measured = Measured(before * factor, place, damping=_damping_told(robot, place))
+    if robot.beam is not None and robot.payload != robot.stated_payload:
+        robot = replace(robot, beam=replace(robot.beam, tip_mass=robot.payload))
     return replace(plant, robot=replace(robot, measured=measured), stiffness=1.0)
+
+
+def _damping_told(robot: Robot, place: tuple[float, ...]) -> float | None:
+    """Damping ratio of the first mode, where measurements told the robot's."""
+    if all(one.damping is None for one in robot.measurements):
+        return None
+    return float(damping_ratios(robot.dynamics, np.array(place))[0])

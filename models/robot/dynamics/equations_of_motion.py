@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import math
+from dataclasses import replace
 from functools import cached_property
 
 import casadi as ca
@@ -125,10 +126,18 @@ class Dynamics:
         stiffened.mechanism = self.mechanism.stiffened(factor)
         return stiffened
 
+    def damped(self, factor: float) -> Dynamics:
+        """Return these equations with a multiple of all dampers of springs."""
+        damped = copy.copy(self)
+        mechanism = self.mechanism
+        damped.mechanism = replace(mechanism, damping=factor * mechanism.damping)
+        return damped
+
     def loaded(self, mass: float, of_one: Dynamics) -> Dynamics:
         """Return these equations with a mass [kg] more, or less, where another has 1 kg alone."""
         loaded = copy.copy(self)
-        loaded.added = (mass, of_one)
+        before = 0.0 if self.added is None else self.added[0]
+        loaded.added = (before + mass, of_one)
         return loaded
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import casadi as ca
@@ -11,37 +10,7 @@ import numpy as np
 from quietarm.models.compiled import Compiled
 from quietarm.models.joint_motion import Array
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics, SoftSpringError
-from quietarm.models.robot.elastic.flexibility import Measured
 from quietarm.models.robot.elastic.spectra import spectrum
-
-_MOST_STIFFER = 25.0
-"""So many times stiffer, or softer, may a measured frequency make the springs."""
-
-
-def as_measured(dynamics: Dynamics, measured: Measured) -> Dynamics:
-    """Return the robot with springs by which the first mode has its measured frequency."""
-    from scipy.optimize import brentq  # takes a quarter of a second to load
-
-    q = np.array(measured.at)
-
-    def excess(logarithm: float) -> float:
-        values, _ = modes_at(dynamics.stiffened(math.exp(logarithm)), q)
-        return math.log(values[0] / measured.frequency)
-
-    stated, _ = modes_at(dynamics, q)
-    guess = 2 * math.log(measured.frequency / stated[0])
-    if abs(guess) > math.log(_MOST_STIFFER):
-        raise ValueError(
-            f"measured frequency is {measured.frequency / math.tau:.4g} Hz, and the robot's is "
-            f"{stated[0] / math.tau:.4g} Hz; check its springs, masses and where it was measured"
-        )
-    ends = (guess - _NEAR, guess + _NEAR)
-    logarithm: Any = brentq(excess, *ends, xtol=1e-13)
-    return dynamics.stiffened(math.exp(logarithm))
-
-
-_NEAR = 0.5
-"""Half the width of the search for the factor of the stiffness (natural logarithm)."""
 
 
 def sag_at(dynamics: Dynamics, q: Array, begin: Array | None = None) -> Array:

@@ -12,8 +12,9 @@ from quietarm.models.joint_motion import Array
 from quietarm.models.number_checks import has_no
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.kinematics import Kinematics
+from quietarm.models.robot.dynamics.measured_fit import MeasuredFit, fit_measured
 from quietarm.models.robot.dynamics.mechanism import Mechanism, build_mechanism
-from quietarm.models.robot.dynamics.modes import as_measured, modes_at, sag_at, tip_offset
+from quietarm.models.robot.dynamics.modes import modes_at, sag_at, tip_offset
 from quietarm.models.robot.dynamics.robot_parts import RobotParts
 from quietarm.models.robot.frames import Frame
 
@@ -35,7 +36,27 @@ class MovingRobot(RobotParts):
     def dynamics(self) -> Dynamics:
         """The equations, with the springs as they were measured."""
         dynamics = Dynamics(self.unscaled)
-        return dynamics if self.measured is None else as_measured(dynamics, self.measured)
+        fit = self.fit
+        if fit is None:
+            return dynamics
+        if fit.payload != 1:
+            more = (fit.payload - 1) * self.stated_payload
+            dynamics = dynamics.loaded(more, self.of_one_kilogram)
+        dynamics = dynamics.stiffened(fit.stiffness)
+        return dynamics if fit.damping == 1 else dynamics.damped(fit.damping)
+
+    @cached_property
+    def fit(self) -> MeasuredFit | None:
+        """Springs and load as measured frequencies tell them; None where none was measured."""
+        if not self.measurements:
+            return None
+        load = (self.stated_payload, self.of_one_kilogram) if self.stated_payload else None
+        return fit_measured(Dynamics(self.unscaled), self.measurements, load)
+
+    @property
+    def payload(self) -> float:
+        """Mass at the end of the beam [kg], as measured frequencies tell it, or as given."""
+        return self.stated_payload * (1.0 if self.fit is None else self.fit.payload)
 
     def dynamics_with(self, stiffness: float, payload: float) -> Dynamics:
         """The equations with so many times the stiffness of all springs, and the mass at the tip.
@@ -51,7 +72,7 @@ class MovingRobot(RobotParts):
     @cached_property
     def of_one_kilogram(self) -> Dynamics:
         """The equations of 1 kg at the end of the beam, without other masses."""
-        return Dynamics(self.mechanism.of_one_kilogram)
+        return Dynamics(self.unscaled.of_one_kilogram)
 
     @property
     def tip_place(self) -> tuple[int, Frame]:

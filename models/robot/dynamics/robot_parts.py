@@ -43,7 +43,7 @@ class RobotParts:
     coulomb: Mapping[str, float] = field(default_factory=dict)
     modes: int | Literal["excited"] | None = None
     limits: Limits = field(default_factory=dict)
-    measured: Measured | None = None
+    measured: Measured | tuple[Measured, ...] | None = None
     positions: Mapping[str, tuple[float, float]] = field(
         default_factory=dict, metadata={"if_stated": True}
     )
@@ -70,8 +70,15 @@ class RobotParts:
         return LINEAR if self.description.joints[joint].kind == PRISMATIC else ROTARY
 
     @property
-    def payload(self) -> float:
-        """Mass at the end of the beam [kg]."""
+    def measurements(self) -> tuple[Measured, ...]:
+        """The frequencies that were measured, none, one or several."""
+        if self.measured is None:
+            return ()
+        return (self.measured,) if isinstance(self.measured, Measured) else self.measured
+
+    @property
+    def stated_payload(self) -> float:
+        """Mass at the end of the beam as it was given [kg]."""
         return 0.0 if self.beam is None else self.beam.tip_mass
 
     @cached_property

@@ -3,25 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from functools import partial
+from pathlib import Path
 from typing import get_args
 
 import click
 
 from quietarm.machine import Recording
 from quietarm.machine import identify as identification
+from quietarm.machine.held_robots.identify_robot import identify_robot
+from quietarm.machine.held_robots.robot_lines import write_robot
 from quietarm.machine.identify.identified import is_modal
 from quietarm.machine.recordings.read_recording import notes_in_words
-from quietarm.models import Plant
+from quietarm.models import Plant, Robot
 from quietarm.models.drive import Recorded
+from quietarm.models.joint_motion import kind_of_joints
+from quietarm.models.robot.robot_file import is_robot_file
 from quietarm.ocp.checks import has_no
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import SET, busy, command, option
 from quietarm.studies.cli.outputs import PICTURE, answer_files, ending_of, finish, output_option
-from quietarm.studies.cli.plants import Kind, parse_plant
+from quietarm.studies.cli.plants import OF_ROBOTS, Kind, parse_plant
 from quietarm.studies.cli.quantities import parse_interval
-from quietarm.studies.cli.recording_options import RECORDED, read_recordings
+from quietarm.studies.cli.recording_options import (
+    RECORDED,
+    read_recordings,
+    read_robot_recordings,
+)
+from quietarm.studies.cli.robot_options import OF_ROBOT, positions_typed
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.views import pictures
+from quietarm.views.report.identified_robot_rows import (
+    identified_robot_rows,
+    robot_answer,
+    robot_notes,
+)
 from quietarm.views.report.machine_rows import (
     machine_answer,
     machine_notes,
@@ -32,9 +48,15 @@ from quietarm.views.report.machine_rows import (
     refuse_defaults,
 )
 
+ROBOT_FILE = ".yaml"
+"""The ending of a robot's file that is written."""
+
 
 @command(
     click.Argument(["files"], type=INPUT, nargs=-1, required=True, metavar="RECORDING... PLANT"),
+    option("--posture", "postures", multiple=True, metavar="POSITIONS",
+           help="Where the joints of a robot were held, as 0,-80deg,97deg, once or for each "
+           "RECORDING in order.  [default: as recorded]"),
     SET,
     *RECORDED,
     option("--part", "parts", type=Parsed("begin:end", parse_interval), multiple=True,
@@ -50,7 +72,8 @@ from quietarm.views.report.machine_rows import (
     option("--check", type=Parsed("machine", parse_plant), help="An identified machine: how much "
            "of the recordings it predicts. PLANT is left out."),
     output_option({".json": "the machine, which serves as a PLANT",
-                   PICTURE: "a picture of the fit"}),
+                   PICTURE: "a picture of the fit",
+                   ".yaml": "the file of a robot with what was measured"}),
 )  # fmt: skip
 def identify(given: Given) -> None:
     """Fit parameters of PLANT to each RECORDING of a machine: csv, npy, or MATLAB's up to v7.
@@ -58,17 +81,27 @@ def identify(given: Given) -> None:
     Ring-downs are found, and each is fitted alone; two intervals tell how well the mean is known,
     and where the next swing will be. Where the joint's angle is recorded, its motion counts, too.
 
+    PLANT may be a robot's file: springs, damping and load by the torques of its held joints, or by
+    its tip.
+
     \b
     Examples:
       quietarm identify push*.csv flexible-beam --tip tip_mm --output arm.json --output fit.png
       quietarm identify run*.mat flexible-beam --time t --angle theta --tip w --output arm.json
       quietarm identify --check arm.json new.csv --tip tip_mm
+      quietarm identify ring.csv robot.yaml --posture 0,-80deg,97deg,-107deg,-90deg,0
       quietarm plan arm.json --error measured --target 60deg --duration 0.9
     """  # noqa: D301  # \b is click's: do not rewrap
-    kind = given.check or _plant_at_the_end(str(given.files[-1]))
-    paths = given.files if given.check else given.files[:-1]
+    files = _robot_last(given.files)
+    kind = given.check or _plant_at_the_end(str(files[-1]))
+    paths = files if given.check else files[:-1]
     if not paths:
         raise click.UsageError("give a RECORDING before PLANT")
+    if isinstance(kind, Robot):
+        return _identify_robot(given, kind, files[-1], paths)
+    given.refuse(["postures"], OF_ROBOT)
+    if written := [path for path in given.output if ending_of(path) == ROBOT_FILE]:
+        raise ValueError(f"{written[0]} is the file of a robot; give machine.json")
     plant = given.read_plant(kind)
     read = read_recordings(given, paths, plant)
     recordings = [one.recording for one in read]
@@ -103,6 +136,43 @@ def identify(given: Given) -> None:
         machine_rows(machine, known, assumed),
         *machine_notes(machine, machine.recorded is None, known, assumed),
         *notes,
+    )
+
+
+def _robot_last(files: Sequence[Path]) -> Sequence[Path]:
+    """The files, with that of a robot at the end where it was given first."""
+    first, last = files[0], files[-1]
+    is_robot = first.suffix in OF_ROBOTS and is_robot_file(first)
+    if len(files) > 1 and is_robot and not (last.suffix in OF_ROBOTS and is_robot_file(last)):
+        return [*files[1:], first]
+    return files
+
+
+def _identify_robot(given: Given, robot: Robot, file: Path, paths: Sequence[Path]) -> None:
+    """Show and write what ring-downs with held joints tell of a robot."""
+    given.refuse(["free", "assume", "recorded", "check"], "is for plants of one joint")
+    given.refuse(["parameters"], "is not for a robot: its springs are what is sought")
+    for path in given.output:
+        if ending_of(path) != ROBOT_FILE:
+            raise ValueError(f"{path} is no file of a robot; give another.yaml")
+        if path.resolve() in {one.resolve() for one in (file, *paths)}:
+            raise ValueError(f"{path} is what is read, and would be lost; give another name")
+    postures = [positions_typed(text, "--posture", robot) for text in given.postures]
+    if len(postures) not in (0, 1, len(paths)):
+        raise click.UsageError(
+            f"--posture is given {len(postures)} times for {len(paths)} recordings; give it once "
+            "for all, or once for each"
+        )
+    kinds = kind_of_joints([robot.kind_of(name) for name in robot.joints])
+    read = read_robot_recordings(given, paths, robot.joints, kinds)
+    with busy("fitting"):
+        found = identify_robot([one.recording for one in read], robot, postures, given.parts)
+    finish(
+        [(path, partial(write_robot, found, file)) for path in given.output],
+        robot_answer(found),
+        identified_robot_rows(found),
+        *robot_notes(found),
+        *notes_in_words(read),
     )
 
 

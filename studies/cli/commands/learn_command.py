@@ -29,7 +29,7 @@ from quietarm.studies.cli.quantities import parse_move, parse_share, parse_usual
 from quietarm.studies.cli.recording_options import (
     RECORDED,
     read_recordings,
-    read_robot_recordings,
+    read_robot_moves,
 )
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.studies.sweep.learned_rows import set_rows, set_sentence
@@ -158,7 +158,7 @@ def _recordings(given: Given, plant: Plant) -> Sequence[ReadRecording | ReadRobo
             "--machine is for plants of one joint; the answer says what to write into the robot's "
             "file"
         )
-    return read_robot_recordings(given, given.files, plant)
+    return read_robot_moves(given, given.files, plant)
 
 
 def _refuse_the_plan_itself(given: Given) -> None:

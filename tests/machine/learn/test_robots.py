@@ -20,6 +20,8 @@ ARRIVAL = 0.6
 TIME = np.arange(0, 3, STEP)
 DURATION = 0.5
 
+JOINTS = ("a", "b")
+
 
 @pytest.fixture(scope="module")
 def plant(tmp_path_factory):
@@ -121,7 +123,7 @@ def test_columns_of_all_joints_are_found(plant, tmp_path, names, option):
     table = np.c_[time, torques, time * 0]
     np.savetxt(tmp_path / "log.csv", table, "%.6g", ",", header=header, comments="")
     columns = Columns({"torque": [option] if option else []})
-    recording, notes = read_robot_recording(tmp_path / "log.csv", columns, "log.csv", plant)
+    recording, notes = read_robot_recording(tmp_path / "log.csv", columns, "log.csv", JOINTS)
     assert recording.torques[:, 1].mean() == pytest.approx(2.0, abs=0.1)
     assert np.abs(recording.torques).max() < 4  # without the first row
     assert np.ptp(recording.time) == pytest.approx((time[-1] - time[1]) / 1e3, abs=0.01)
@@ -142,7 +144,7 @@ def test_joint_states_are_read_by_the_names_of_the_joints(plant, tmp_path):
         for k in range(30)
     )
     (tmp_path / "states.yaml").write_text(text)
-    read = read_robot_recording(tmp_path / "states.yaml", Columns({}), "states.yaml", plant)
+    read = read_robot_recording(tmp_path / "states.yaml", Columns({}), "states.yaml", JOINTS)
     assert read.recording.torques[:3].tolist() == [[0.0, 0.5], [2.0, 1.5], [4.0, 2.5]]
     assert read.recording.time[:3].tolist() == [0.0, 1.0, 2.0]
     assert read.notes == ["30 messages without these joints are not used"]
@@ -161,16 +163,16 @@ def test_joint_states_are_read_by_the_names_of_the_joints(plant, tmp_path):
 def test_messages_that_do_not_serve_are_refused_in_a_line(plant, tmp_path, text, words):
     (tmp_path / "states.yaml").write_text(text)
     with pytest.raises(FileFormatError, match=words) as refused:
-        read_robot_recording(tmp_path / "states.yaml", Columns({}), "states.yaml", plant)
+        read_robot_recording(tmp_path / "states.yaml", Columns({}), "states.yaml", JOINTS)
     assert "\n" not in str(refused.value)
 
 
 def test_a_csv_without_columns_of_the_joints_says_how_they_may_be_called(plant, tmp_path):
     np.savetxt(tmp_path / "log.csv", np.ones((30, 2)), header="t,force", delimiter=",", comments="")
     with pytest.raises(FileFormatError, match="such as a_effort; name what they begin with"):
-        read_robot_recording(tmp_path / "log.csv", Columns({}), "log.csv", plant)
+        read_robot_recording(tmp_path / "log.csv", Columns({}), "log.csv", JOINTS)
     with pytest.raises(FileFormatError, match=r"'a_tau' or 'tau\[0\]'"):
-        read_robot_recording(tmp_path / "log.csv", Columns({"torque": ["tau"]}), "log", plant)
+        read_robot_recording(tmp_path / "log.csv", Columns({"torque": ["tau"]}), "log", JOINTS)
 
 
 # The next plan

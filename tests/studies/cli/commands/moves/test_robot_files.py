@@ -190,3 +190,15 @@ def test_a_path_with_corners_is_rounded_within_its_tolerance(folder, call):
     # 0.45 of 0.5 deg at the corner: half a right angle from both
     assert "the path is up to 0.0056 rad from the straight lines between waypoints" in words
     assert re.search(r"and the tip [\d.]+ mm", words)
+
+
+@pytest.mark.slow
+def test_the_misfit_of_every_posture_stands_in_one_row(folder, call):
+    entries = ["{frequency: 3Hz, at: [0, 0]}", "{frequency: 3.06Hz, at: [0.4, 1rad]}"]
+    write_robot(folder, ARM, f"{ARM_FILE}measured: [{', '.join(entries)}]\n")
+    code, out, _ = call("list robot.yaml")
+    assert code == 0
+    # upright axes: the two have one frequency, 1 % from each
+    words = _words(out)
+    assert "the load as stated: these frequencies do not tell it from the springs" in words
+    assert "misfit 3 Hz -0.99 %, 3.06 Hz +1 %" in words

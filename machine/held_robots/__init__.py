@@ -1,0 +1,1 @@
+"""A robot whose joints are held while it rings down: its springs, its damping and its load."""

@@ -1,0 +1,271 @@
+"""A robot's springs, damping and load from ring-downs with its joints held."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import tau
+from typing import Any
+
+import numpy as np
+
+from quietarm.machine.held_robots.held_load import load_at_rest
+from quietarm.machine.held_robots.held_swings import HeldSwing, RingDown, read_ring_downs
+from quietarm.machine.identify.combine import Group, estimate
+from quietarm.machine.identify.identified import Estimate
+from quietarm.machine.recordings.robot_recording import RobotRecording
+from quietarm.models.robot import Measured, Robot
+from quietarm.ocp.checks import instance, several, takes
+
+_SAME_POSTURE = 0.01
+"""Positions of one posture differ by less [rad or m]: encoders and controllers flicker."""
+_LEAST_WITHIN = 1e-3
+"""Share within which a frequency is stated at best."""
+BY_FREQUENCIES = "by the frequencies"
+BY_TORQUES = "by the torques at rest"
+
+
+@dataclass(frozen=True)
+class HeldMode:
+    """One mode at one posture, by all ring-downs of it.
+
+    Attributes
+    ----------
+    posture : tuple of float
+        Positions of the driven joints [rad or m].
+    mode : int
+        Its number; 1 is the slowest.
+    frequency, damping : Estimate
+        Its frequency [Hz] and damping ratio.
+    misfit : float
+        By what share the frequency is above that of the robot that was identified.
+    recordings : tuple of str
+        Names of those that tell it.
+    """
+
+    posture: tuple[float, ...]
+    mode: int
+    frequency: Estimate
+    damping: Estimate
+    misfit: float
+    recordings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class IdentifiedRobot:
+    """A robot as its ring-downs tell it.
+
+    Attributes
+    ----------
+    robot : Robot
+        With what was measured, and the load that was told.
+    modes : tuple of HeldMode
+        By posture and mode.
+    stiffness : Estimate
+        Multiple of the stiffness of all springs in the robot's file.
+    damping : float
+        Multiple of the dampers, beside what keeps the damping ratio.
+    payload : Estimate or None
+        Mass at the end of the beam [kg]; None where nothing tells it.
+    payload_by : str
+        By what it is told, or why it is not.
+    notes : tuple of str
+        How ring-downs were read.
+    """
+
+    robot: Robot
+    modes: tuple[HeldMode, ...]
+    stiffness: Estimate
+    damping: float
+    payload: Estimate | None
+    payload_by: str
+    notes: tuple[str, ...]
+
+
+@takes(robot=Robot)
+def identify_robot(
+    recordings: Sequence[RobotRecording],
+    robot: Robot,
+    postures: Sequence[Sequence[float] | None] = (),
+    parts: Sequence[tuple[float, float]] = (),
+) -> IdentifiedRobot:
+    """Identify the springs, the damping and the load of a robot by ring-downs with held joints.
+
+    The frequencies tell all springs by one multiple; the load as well where several modes or
+    postures tell it from the springs, or else where the torques of the joints at rest do.
+
+    Parameters
+    ----------
+    recordings : sequence of RobotRecording
+        Torques of the joints, or the tip's acceleration or displacement.
+    robot : Robot
+        As its file has it. What was measured of it before is not used.
+    postures : sequence of (sequence of float or None), optional
+        Positions of the driven joints [rad or m] in each recording; None where they are recorded.
+    parts : sequence of (float, float), optional
+        Begin and end [s] of each ring-down, in every recording; found by default.
+
+    Raises
+    ------
+    ValueError
+        When nothing rings down, no posture is known, or frequencies contradict the robot.
+    """
+    checked = several("recordings", recordings, "recordings, as [RobotRecording(time, ...)]")
+    if not checked:
+        raise ValueError("no recording is given; give one")
+    for recording in checked:
+        instance("a recording", recording, RobotRecording)
+    places = _postures(postures, len(checked))
+    before = replace(robot, measured=None)
+    ring_downs = [
+        ring_down
+        for recording, posture in zip(checked, places)
+        for ring_down in read_ring_downs(before, recording, posture, parts)
+    ]
+    swings = _of_one_posture([swing for one in ring_downs for swing in one.swings])
+    notes = [note for recording in checked for note in recording.notes]
+    notes += [note for one in ring_downs for note in one.notes]
+    if robot.measured is not None:
+        notes.append("what the robot's file has as measured is not used: it is measured anew")
+    return _identified(before, swings, ring_downs, notes)
+
+
+def _postures(postures: Sequence[Any], count: int) -> list[Any]:
+    """A posture of each recording: one counts for all."""
+    given = list(postures)
+    if len(given) == 1:
+        return given * count
+    if given and len(given) != count:
+        raise ValueError(
+            f"{len(given)} postures are given for {count} recordings; give one of each"
+        )
+    return given or [None] * count
+
+
+def _of_one_posture(swings: Sequence[HeldSwing]) -> list[HeldSwing]:
+    """The swings, each with the posture of the first that is the same within what flickers."""
+    known = list[tuple[float, ...]]()
+    same = list[HeldSwing]()
+    for swing in swings:
+        near = [one for one in known if np.allclose(one, swing.posture, rtol=0, atol=_SAME_POSTURE)]
+        if not near:
+            known.append(swing.posture)
+        same.append(replace(swing, posture=near[0] if near else swing.posture))
+    return same
+
+
+def _identified(
+    before: Robot,
+    swings: Sequence[HeldSwing],
+    ring_downs: Sequence[RingDown],
+    notes: Sequence[str],
+) -> IdentifiedRobot:
+    groups = dict[tuple[tuple[float, ...], int], list[HeldSwing]]()
+    for swing in swings:
+        groups.setdefault((swing.posture, swing.mode), []).append(swing)
+    order = sorted(groups, key=lambda one: [swing.posture for swing in swings].index(one[0]))
+    told = [_mode(*key, groups[key]) for key in sorted(order, key=lambda one: (one[0], one[1]))]
+    measured = tuple(map(_measured, told))
+    damped = any(before.dynamics.mechanism.damping > 0)
+    if not damped:
+        measured = tuple(replace(one, damping=None) for one in measured)
+        notes = [*notes, "the robot's file has no damping that could be scaled: give some"]
+    robot = replace(before, measured=measured)
+    assert robot.fit is not None
+    factor, unsure = robot.fit.stiffness, robot.fit.unsure[0]
+    damping = robot.fit.damping
+    if robot.fit.tells_payload:
+        share = robot.fit.unsure[1]
+        mass = robot.payload
+        payload: Estimate | None = _estimate("payload", mass, share * mass)
+        robot, why = _carrying(robot, mass), BY_FREQUENCIES
+    else:
+        payload, why = _by_torques(robot, ring_downs)
+        if payload is not None:
+            robot = _carrying(robot, payload.value)
+            heavy = _carrying(robot, payload.high)
+            assert robot.fit is not None
+            assert heavy.fit is not None
+            factor = robot.fit.stiffness
+            unsure = float(np.hypot(unsure, heavy.fit.stiffness / factor - 1))
+    fit = robot.fit
+    assert fit is not None
+    return IdentifiedRobot(
+        robot=robot,
+        modes=tuple(replace(one, misfit=misfit) for one, misfit in zip(told, fit.misfits)),
+        stiffness=_estimate("stiffness", factor, unsure * factor),
+        damping=damping,
+        payload=payload,
+        payload_by=why,
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def _carrying(robot: Robot, mass: float) -> Robot:
+    """The robot with another mass at the end of its beam."""
+    assert robot.beam is not None
+    return replace(robot, beam=replace(robot.beam, tip_mass=mass))
+
+
+def _by_torques(robot: Robot, ring_downs: Sequence[RingDown]) -> tuple[Estimate | None, str]:
+    """The load by what holds the joints, or why that does not tell it."""
+    if not robot.stated_payload:
+        return None, (
+            "the robot's file has no load: give the beam a tip_mass, as 0.1kg, for it to be sought"
+        )
+    held = [(one.posture, one.torques) for one in ring_downs if one.torques is not None]
+    if not held:
+        return None, (
+            "these frequencies do not tell it from the springs; record the torques of the joints, "
+            "or a faster mode"
+        )
+    mass, deviation, why = load_at_rest(robot, held)
+    if why or not 2 * deviation < mass:
+        why = why or "the torques at rest tell it no better than within its own size"
+        return None, f"these frequencies do not tell it from the springs, and {why}"
+    return _estimate("payload", mass, 2 * deviation), BY_TORQUES
+
+
+def _estimate(name: str, value: float, half: float) -> Estimate:
+    return Estimate(name, value, value - half, value + half)
+
+
+def _mode(posture: tuple[float, ...], mode: int, swings: Sequence[HeldSwing]) -> HeldMode:
+    """The mean of all ring-downs that show a mode at a posture, with its interval."""
+    recordings = tuple(dict.fromkeys(swing.recording for swing in swings))
+
+    def groups(value: str, deviation: str) -> list[Group]:
+        return [
+            Group(
+                np.array([getattr(s, value) for s in swings if s.recording == name]),
+                np.array([getattr(s, deviation) for s in swings if s.recording == name]) ** 2,
+            )
+            for name in recordings
+        ]
+
+    return HeldMode(
+        posture=posture,
+        mode=mode,
+        frequency=estimate("frequency", groups("frequency", "of_frequency")),
+        damping=estimate("damping", groups("damping", "of_damping")),
+        misfit=0.0,
+        recordings=recordings,
+    )
+
+
+def _measured(told: HeldMode) -> Measured:
+    """An entry of the robot's file; its damping where that is known at all."""
+    frequency, damping = told.frequency, told.damping
+    half = (frequency.high - frequency.low) / 2 / frequency.value
+    is_known = damping.low > 0 and told.mode <= _DAMPED_MODES
+    return Measured(
+        frequency=tau * frequency.value,
+        at=told.posture,
+        mode=told.mode,
+        damping=damping.value if is_known else None,
+        within=max(half, _LEAST_WITHIN),
+    )
+
+
+_DAMPED_MODES = 2
+"""The damping of these is met: that of faster ones is another, and soon over."""
