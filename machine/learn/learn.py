@@ -111,7 +111,7 @@ def learn(
         repeatable=evidence.repeatable,
         scatter=evidence.scatter,
         floor=evidence.floor + evidence.beyond,
-        next_at_most=evidence.at_most(told) + evidence.beyond,
+        next_at_most=evidence.at_most(told),
         changed=evidence.changed,
         estimates=evidence.estimates,
         start={one.recording.name: one.start for one in read},

@@ -102,6 +102,20 @@ def test_a_made_up_ring_down_has_its_amplitude_and_phase_at_arrival(phase):
     assert error < 5 * found.deviation  # five standard deviations
 
 
+@pytest.mark.slow_after(1)
+def test_what_a_servo_does_before_the_swing_is_read_counts():
+    time = np.arange(0, 4, 1 / RATE)
+    since = np.maximum(time - ARRIVAL, 0.0)
+    settles = np.where(time > ARRIVAL, 1e-4 * np.exp(-since / 0.01), 0.0)
+    noise = np.random.default_rng(0).normal(0, 1e-6, len(time))
+    still, moved = (
+        read_swing(qa.Recording(time, tip=tip), ARRIVAL, AXIS, 0.5)
+        for tip in (noise, noise + settles)
+    )
+    assert still.settling < 3e-6  # noise of means
+    assert 3e-5 < moved.settling < 1e-4  # their largest is at most what it begins with
+
+
 @pytest.mark.slow
 def test_an_accelerometer_tells_the_same_displacement():
     time = np.arange(0, 4, 1 / RATE)
@@ -235,6 +249,15 @@ def test_the_joint_and_its_torque_alone_tell_the_frequency():
 
 
 @pytest.mark.slow
+def test_a_torque_tells_a_damping_that_is_wrong_by_a_factor():
+    model = replace(TASK, plant=replace(AXIS, zeta1=0.03))
+    plan = qa.plan_move(model, qa.CycloidPolynomial(4), starts=1)
+    learned = qa.learn(plan, [recording(plan, "angle", "torque", frequency=5.4)])
+    assert learned.machine.plant.zeta1 == pytest.approx(0.01, abs=0.01)  # half as wrong
+    assert left_by(learned.plan, frequency=5.4) < learned.next_at_most
+
+
+@pytest.mark.slow
 def test_a_force_in_another_unit_tells_the_same_and_is_doubted():
     plan = a_plan()
     run = recording(plan, "angle", "torque", frequency=5.4)
@@ -291,6 +314,8 @@ def test_a_machine_that_changes_between_moves_is_said_to():
     (note,) = (note for note in second.notes if "changes from move to move" in note)
     assert "it swung at 5.2 and 5.4 Hz" in note
     assert note.endswith("by --error frequency=1.9%")  # half of 0.2 Hz in 5.3
+    either = [left_by(second.plan, frequency=hertz) for hertz in (5.2, 5.4)]
+    assert max(either) < second.next_at_most  # either frequency may be the next
 
 
 @pytest.mark.slow
