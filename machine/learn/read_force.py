@@ -94,10 +94,10 @@ def read_torque(recording: Recording, begin: float, end: float, plant: Plant) ->
     fitter = PartFitter(plant, names, moving, 1.0)
     fitter.frequency = float(fitter.frequencies[0])
     part = fitter.part(slice(0, len(moving.time)), hub="moves")
-    model = _model(fitter, moving)
+    model = torque_model(fitter, moving)
     start = min(starts_near(fitter, model), key=model.cost)
     fitter.frequency = fitter.frequency_of(start)
-    model = _model(fitter, moving)
+    model = torque_model(fitter, moving)
     best = fitter.fit_model(model, part, start)
     misfit = best.misfit
     noise = float(noise_of(model.values)[0] / np.maximum(best.swinging.std(axis=0)[0], 1e-300))
@@ -123,7 +123,7 @@ def _rows(values: Array | None, rows: slice) -> Array:
     return values[rows]
 
 
-def _model(fitter: PartFitter, moving: Recording) -> SwingModel:
+def torque_model(fitter: PartFitter, moving: Recording) -> SwingModel:
     """The torque of a move as what the joint's motion makes of it."""
     averaged_over = 0.06  # of a period
     piece = fitter.thinned(moving)

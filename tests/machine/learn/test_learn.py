@@ -16,7 +16,7 @@ from quietarm.machine.learn.read_swing import read_swing
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.models import LinearAxis
-from quietarm.views.report.learning_rows import learning_sentence
+from quietarm.views.report.learning_rows import learning_rows, learning_sentence
 
 AXIS = LinearAxis(omega1=2 * np.pi * 5, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
 TASK = qa.PointToPoint(AXIS, target=0.5, duration=0.7)
@@ -500,3 +500,20 @@ def test_a_plan_of_one_motion_is_refused():
     plan = qa.evaluate_coefficients(TASK, [], profile=qa.shaped_cycloid(TASK, "zv"))
     with pytest.raises(ValueError, match="has one motion alone, and nothing to change"):
         qa.learn(plan, [recording(a_plan(), "tip")])
+
+
+# What swings
+
+
+@pytest.mark.slow
+def test_a_torque_tells_a_heavier_payload_from_a_softer_structure():
+    lighter = replace(TASK, plant=replace(AXIS, load=10.0))  # of 12 kg that swing on the machine
+    plan = qa.plan_move(lighter, qa.CycloidPolynomial(4), starts=1)
+    for signals in (("angle", "torque"), ("tip", "angle", "torque")):
+        learned = qa.learn(plan, [recording(plan, *signals, frequency=4.8)])
+        swings, moves = learned.inertias
+        assert swings.value == pytest.approx(1.2, abs=0.03)  # 12 of 10 kg
+        assert swings.low < 1.2 < swings.high
+        assert moves.value == pytest.approx(1.0, abs=0.01)
+        assert any(name == "what swings" for name, _ in learning_rows(plan, learned))
+    assert qa.learn(plan, [recording(plan, "tip", "angle", frequency=4.8)]).inertias == ()
