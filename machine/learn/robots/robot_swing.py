@@ -63,7 +63,7 @@ class RobotSwing:
     notes : tuple of str
         How it was read.
     other : float
-        How far the tip rings beside its modes [m]; 0 where torques are recorded.
+        How far the tip rings beside its modes [m].
     """
 
     measured: RecordedArrival
@@ -106,7 +106,8 @@ def read_robot_swing(
     unsure : float
         Standard deviation of the arrival's time [s].
     """
-    fit, notes = _best_fit(_Window(recording, arrival, modes))
+    with_rings = _with_rings(_Window(recording, arrival, modes))
+    fit, notes = _best_fit(with_rings)
     seen = np.abs(fit.at_arrival) > _SEEN * fit.deviations
     amplitudes = np.where(seen, fit.at_arrival * np.exp(fit.by_mode * late), 0.0)
     # a wrong start turns the phase
@@ -121,7 +122,9 @@ def read_robot_swing(
         for k in np.flatnonzero(telling).tolist()
     }
     measured = RecordedArrival(recording.name, swings, values, spreads)
-    return RobotSwing(measured, tuple(f"{recording.name}: {note}" for note in notes), fit.other)
+    return RobotSwing(
+        measured, tuple(f"{recording.name}: {note}" for note in notes), with_rings.other
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,9 +166,9 @@ class _Window:
         return float(np.ptp(self.signals[0])) * float(self.modes.frequencies[0])
 
 
-def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
-    """The fit that makes the swing at arrival surest, and how it reads it."""
-    best = _with_rings(window)
+def _best_fit(best: _Fit) -> tuple[_Fit, list[str]]:
+    """The fit that makes the swing at arrival surest, of one with rings and later ones, and how."""
+    window = best.window
     notes = list[str]()
     if best.rings:
         notes.append(
@@ -299,11 +302,15 @@ class _Fit:
 
     @property
     def other(self) -> float:
-        """Ringing of the tip beside its modes, at arrival [m]; 0 where torques are recorded."""
-        if self.window.recording.acceleration is None:
-            return 0.0
+        """Ringing of the tip beside its modes, at arrival [m].
+
+        Of torques it is what a ring of the arm itself does, whose joints give by its masses: a
+        gear's, or a base's, whose shape is not known.
+        """
         values = self._eigenvalues(self.found)[len(self._model) :]
         by_signal = self._solved(self.found)[0][len(self._model) :]
+        if self.window.recording.acceleration is None:
+            by_signal = by_signal @ self.window.modes.tip_by_torques.T
         sizes = np.linalg.norm(by_signal, axis=1) / np.abs(values) ** 2
         return float((sizes * np.exp(-values.real * self._time[0])).sum())
 
