@@ -113,7 +113,10 @@ CASES = (
 
 @dataclass
 class Course:
-    """One case from one seed: the plan that is executed next, and what each move left [m]."""
+    """One case from one seed: the plan that is executed next, and what each move left [m].
+
+    `acts` has when the tool may act [s]: from then on it stays within 0.1 mm.
+    """
 
     case: Case
     plan: Plan
@@ -121,6 +124,7 @@ class Course:
     residuals: list[float] = field(default_factory=list)
     predicted: list[float] = field(default_factory=list)
     energies: list[float] = field(default_factory=list)
+    acts: list[float] = field(default_factory=list)
     refused: str = ""
 
 
@@ -164,6 +168,7 @@ def march(move: Move, courses: Sequence[Course], last: bool) -> None:
         own = [k for k, one in enumerate(planned) if one is course]
         course.residuals.append(float(np.mean([found[k].residual for k in own])))
         course.energies.append(float(np.mean([found[k].energy for k in own])))
+        course.acts.append(float(np.max([found[k].acts_after for k in own])))
         if last:
             continue
         recordings = [recorded(course, move, actual[k], runs, k) for k in own]

@@ -61,6 +61,12 @@ class HeldModes:
         """Frequencies of the modes [Hz]."""
         return np.abs(self.values) / (2 * np.pi)
 
+    @property
+    def tip_by_torques(self) -> Array:
+        """Acceleration of the tip by torques, of which held joints show none (3, signals)."""
+        by_joints = self._signal == "torques"
+        return np.zeros((3, len(self._q) if by_joints else len(self._axes)))
+
     def rows_at(self, values: ComplexArray) -> ComplexArray:
         """Return each mode's effect on each signal (signals, modes), with these eigenvalues."""
         by_angles, by_accelerations = self._by_springs

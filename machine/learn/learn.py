@@ -16,11 +16,18 @@ from quietarm.machine.learn.check_clock import check_clock
 from quietarm.machine.learn.check_columns import check_columns, refuse_constant
 from quietarm.machine.learn.check_move import check_move
 from quietarm.machine.learn.check_size import check_size
-from quietarm.machine.learn.evidence import Evidence, ReadMove, evidence_of, is_by_joint
+from quietarm.machine.learn.evidence import (
+    Evidence,
+    ReadMove,
+    evidence_of,
+    is_by_joint,
+    motion_of,
+)
 from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
 from quietarm.machine.learn.read_force import read_torque, swing_by_joint
+from quietarm.machine.learn.read_payload import read_payload
 from quietarm.machine.learn.read_swing import AfterMove, check_length, read_swing
 from quietarm.machine.learn.robots.robot_evidence import refuse_delay, robot_evidence
 from quietarm.machine.learn.tip_modes import TipModes
@@ -79,9 +86,12 @@ def learn(
     check_plan(plan)
     if plan.task.plant.has_path:
         evidence, read, notes = robot_evidence(plan, recordings, delay)
+        inertias = ()
     else:
         refuse_delay(delay)
         evidence, read, notes = _evidence(plan, recordings)
+        executed = motion_of(evidence.history.moves[-1], plan.task, evidence.told_plant)
+        inertias = read_payload(executed, read, plan.task.duration)
     history = evidence.history
     step = evidence.step
     told = evidence.told_next(step)
@@ -111,7 +121,7 @@ def learn(
         repeatable=evidence.repeatable,
         scatter=evidence.scatter,
         floor=evidence.floor + evidence.beyond,
-        next_at_most=evidence.at_most(told) + evidence.beyond,
+        next_at_most=evidence.at_most(told),
         changed=evidence.changed,
         estimates=evidence.estimates,
         start={one.recording.name: one.start for one in read},
@@ -120,6 +130,7 @@ def learn(
         by_joint=evidence.by_joint,
         notes=(*notes, *evidence.doubts),
         modes=evidence.frequencies,
+        inertias=inertias,
     )
 
 

@@ -48,6 +48,9 @@ class Learning:
         Whether no tip was recorded, so that all follows from the joint and its torque.
     modes : mapping of str to (float, float)
         Of a robot: the frequency of every mode that moves told [Hz], the plan's and the robot's.
+    inertias : tuple of Estimate
+        Where the joint and its torque were recorded: how many times as heavy as the plan's what
+        swings is, its payload, and all that moves. The plan and the machine keep theirs.
     """
 
     plan: Plan
@@ -65,6 +68,7 @@ class Learning:
     by_joint: bool
     notes: tuple[str, ...] = field(default=())
     modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    inertias: tuple[Estimate, ...] = field(default=())
 
     @property
     def is_done(self) -> bool:

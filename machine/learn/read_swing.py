@@ -50,12 +50,16 @@ class AfterMove:
     other : float
         Amplitude of what moves the tip then beside its modes and the sensor's noise [m]: further
         modes, friction, the servo; 0 of an accelerometer.
+    settling : float
+        How far the tip may be off that swing while the servo settles, before it is read [m]: what
+        is seen of it there, and twice what the noise hides; 0 of an accelerometer.
     """
 
     measured: RecordedArrival
     part: Part | None
     notes: tuple[str, ...] = ()
     other: float = 0.0
+    settling: float = 0.0
 
 
 def modal_names(plant: Plant) -> list[str]:
@@ -128,7 +132,14 @@ def read_swing(
     values = dict(part.values) if part else {}
     deviations = dict(part.deviations) if part else {}
     measured = RecordedArrival(recording.name, tuple(swings), values, deviations)
-    return AfterMove(measured, part, _notes(fitter, fitted, part), _other(fitter, fitted, p))
+    as_fitted = with_values(plant, dict(zip(names, p.tolist())))
+    return AfterMove(
+        measured,
+        part,
+        _notes(fitter, fitted, part),
+        _other(fitter, fitted, p),
+        _settling(recording, arrival, begin, swings, as_fitted, place),
+    )
 
 
 def _notes(fitter: PartFitter, fitted: Part, part: Part | None) -> tuple[str, ...]:
@@ -156,6 +167,34 @@ def _other(fitter: PartFitter, part: Part, p: Array) -> float:
     noise = noise_of(fitter.piece(part).values) / thinned**0.5
     power = np.maximum((left**2).mean(axis=1) - noise**2, 0.0)
     return float(np.sqrt(2 * power.max()))
+
+
+def _settling(
+    recording: Recording,
+    arrival: float,
+    begin: float,
+    swings: list[ArrivalSwing],
+    plant: Plant,
+    place: float,
+) -> float:
+    """Return how far a tip is off the swings that were read, from arrival until they are read."""
+    if recording.tip is None:
+        return 0.0
+    modes = TipModes(plant, place)
+    amplitudes = np.array([swing.complex_amplitude for swing in swings])
+    end = begin + _FIRST_PERIODS / float(modes.frequencies[0])
+    rows = recording.rows(arrival, min(end, float(recording.time[-1])))
+    since = recording.time[rows] - arrival
+    told = (np.exp(np.outer(since, modes.values)) * amplitudes) @ modes.tips.T
+    beside = recording.tip[rows].reshape(len(since), -1) - told.real
+    beside = beside - beside[since >= begin - arrival].mean(axis=0)
+    noise = noise_of(recording.tip[rows].reshape(len(since), -1))
+    halves = np.array_split(beside[since < begin - arrival], 2)
+    many = 2.0  # deviations
+    sizes = [
+        np.abs(half.mean(axis=0)) + many * noise / len(half) ** 0.5 for half in halves if len(half)
+    ]
+    return float(np.max(sizes)) if sizes else 0.0
 
 
 def _rows_of(values: Array | None, rows: slice) -> Array | None:

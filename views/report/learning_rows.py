@@ -84,6 +84,11 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
                 "(95 %)",
             )
         )
+    for inertia in learned.inertias:
+        words = (
+            f"{inertia.value:.3g} times the plan's, within {inertia.low:.3g} to {inertia.high:.3g}"
+        )
+        rows.append((inertia.parameter, f"{words} (95 %, by the torque)"))
     if learned.scatter is not None:
         rows.append(("scatter", f"{with_unit(learned.scatter, plant)} from move to move"))
     if not learned.is_done:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.models import JointMotion, Plant
+from quietarm.models.robot import RobotOnPath
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -52,6 +53,24 @@ class SeenModes(TipModes):
             + (by_accelerations @ shapes) * values**2
         )
         return rows
+
+    @cached_property
+    def tip_by_torques(self) -> Array:
+        """Acceleration of the tip by torques that accelerate the joints (3, joints).
+
+        Of a robot at rest at the place, whose springs are stiff; none of other plants.
+        """
+        plant = self._plant
+        if not isinstance(plant, RobotOnPath):
+            return np.zeros((3, len(plant.joint_names)))
+        robot = plant.robot
+        q = np.asarray(plant.path(self._place), float).ravel()
+        kinematics = robot.kinematics(robot.tip)
+        _, slopes = kinematics.offset(q, kinematics.pose(q))
+        dynamics = robot.dynamics
+        masses = dynamics.masses(np.append(q, np.zeros(dynamics.sprung)))[: len(q), : len(q)]
+        by_torques: Array = slopes[:3] @ np.linalg.inv(masses)
+        return by_torques
 
     @cached_property
     def _by_modes(self) -> tuple[Array, Array, Array]:

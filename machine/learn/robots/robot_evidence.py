@@ -219,6 +219,11 @@ class RobotEvidence(Evidence):
         """Ringing of the tip beside its modes, where that is seen [m]."""
         return max(one.after.other for one in self._moves)
 
+    @property
+    def settling(self) -> float:
+        """0: a robot's arm rings while it settles, which `beyond` has."""
+        return 0.0
+
     # The springs
 
     @cached_property

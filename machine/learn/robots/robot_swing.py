@@ -68,6 +68,11 @@ class SwingingModes(Protocol):
         """Frequencies of the modes [Hz]."""
         ...
 
+    @property
+    def tip_by_torques(self) -> Array:
+        """Acceleration of the tip by torques that accelerate joints (3, signals); 0 if held."""
+        ...
+
     def rows_at(self, values: ComplexArray) -> ComplexArray:
         """Return each mode's effect on each signal (signals, modes), with these eigenvalues."""
         ...
@@ -84,7 +89,7 @@ class RobotSwing:
     notes : tuple of str
         How it was read.
     other : float
-        How far the tip rings beside its modes [m]; 0 where torques are recorded.
+        How far the tip rings beside its modes [m].
     dampings : dict of str to (float, float)
         Damping ratios of the modes that stand out, and their standard deviations.
     unexplained : float
@@ -141,7 +146,8 @@ def read_robot_swing(
     periods : float
         Of the slowest mode, that are read.
     """
-    fit, notes = _best_fit(_Window(recording, arrival, modes, periods=periods))
+    with_rings = _with_rings(_Window(recording, arrival, modes, periods=periods))
+    fit, notes = _best_fit(with_rings)
     seen = np.abs(fit.at_arrival) > _SEEN * fit.deviations
     amplitudes = np.where(seen, fit.at_arrival * np.exp(fit.by_mode * late), 0.0)
     # a wrong start turns the phase
@@ -161,7 +167,7 @@ def read_robot_swing(
     }
     measured = RecordedArrival(recording.name, swings, values, spreads)
     named = tuple(f"{recording.name}: {note}" for note in notes)
-    return RobotSwing(measured, named, fit.other, dampings, fit.unexplained)
+    return RobotSwing(measured, named, with_rings.other, dampings, fit.unexplained)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,9 +209,9 @@ class _Window:
         return float(np.ptp(self.signals[0])) * float(self.modes.frequencies[0])
 
 
-def _best_fit(window: _Window) -> tuple[_Fit, list[str]]:
-    """The fit that makes the swing at arrival surest, and how it reads it."""
-    best = _with_rings(window)
+def _best_fit(best: _Fit) -> tuple[_Fit, list[str]]:
+    """The fit that makes the swing at arrival surest, of one with rings and later ones, and how."""
+    window = best.window
     notes = list[str]()
     if best.rings:
         notes.append(
@@ -339,11 +345,15 @@ class _Fit:
 
     @property
     def other(self) -> float:
-        """Ringing of the tip beside its modes, at arrival [m]; 0 where torques are recorded."""
-        if self.window.recording.acceleration is None:
-            return 0.0
+        """Ringing of the tip beside its modes, at arrival [m].
+
+        Of torques it is what a ring of the arm itself does, whose joints give by its masses: a
+        gear's, or a base's, whose shape is not known.
+        """
         values = self._eigenvalues(self.found)[len(self._model) :]
         by_signal = self._solved(self.found)[0][len(self._model) :]
+        if self.window.recording.acceleration is None:
+            by_signal = by_signal @ self.window.modes.tip_by_torques.T
         sizes = np.linalg.norm(by_signal, axis=1) / np.abs(values) ** 2
         return float((sizes * np.exp(-values.real * self._time[0])).sum())
 

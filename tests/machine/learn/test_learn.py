@@ -16,7 +16,7 @@ from quietarm.machine.learn.read_swing import read_swing
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.models import LinearAxis
-from quietarm.views.report.learning_rows import learning_sentence
+from quietarm.views.report.learning_rows import learning_rows, learning_sentence
 
 AXIS = LinearAxis(omega1=2 * np.pi * 5, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
 TASK = qa.PointToPoint(AXIS, target=0.5, duration=0.7)
@@ -100,6 +100,20 @@ def test_a_made_up_ring_down_has_its_amplitude_and_phase_at_arrival(phase):
     assert read.values["zeta1"] == pytest.approx(zeta, rel=0.05)
     error = abs(found.complex_amplitude - 2e-3 * np.exp(1j * phase))
     assert error < 5 * found.deviation  # five standard deviations
+
+
+@pytest.mark.slow_after(1)
+def test_what_a_servo_does_before_the_swing_is_read_counts():
+    time = np.arange(0, 4, 1 / RATE)
+    since = np.maximum(time - ARRIVAL, 0.0)
+    settles = np.where(time > ARRIVAL, 1e-4 * np.exp(-since / 0.01), 0.0)
+    noise = np.random.default_rng(0).normal(0, 1e-6, len(time))
+    still, moved = (
+        read_swing(qa.Recording(time, tip=tip), ARRIVAL, AXIS, 0.5)
+        for tip in (noise, noise + settles)
+    )
+    assert still.settling < 3e-6  # noise of means
+    assert 3e-5 < moved.settling < 1e-4  # their largest is at most what it begins with
 
 
 @pytest.mark.slow
@@ -235,6 +249,15 @@ def test_the_joint_and_its_torque_alone_tell_the_frequency():
 
 
 @pytest.mark.slow
+def test_a_torque_tells_a_damping_that_is_wrong_by_a_factor():
+    model = replace(TASK, plant=replace(AXIS, zeta1=0.03))
+    plan = qa.plan_move(model, qa.CycloidPolynomial(4), starts=1)
+    learned = qa.learn(plan, [recording(plan, "angle", "torque", frequency=5.4)])
+    assert learned.machine.plant.zeta1 == pytest.approx(0.01, abs=0.01)  # half as wrong
+    assert left_by(learned.plan, frequency=5.4) < learned.next_at_most
+
+
+@pytest.mark.slow
 def test_a_force_in_another_unit_tells_the_same_and_is_doubted():
     plan = a_plan()
     run = recording(plan, "angle", "torque", frequency=5.4)
@@ -291,6 +314,8 @@ def test_a_machine_that_changes_between_moves_is_said_to():
     (note,) = (note for note in second.notes if "changes from move to move" in note)
     assert "it swung at 5.2 and 5.4 Hz" in note
     assert note.endswith("by --error frequency=1.9%")  # half of 0.2 Hz in 5.3
+    either = [left_by(second.plan, frequency=hertz) for hertz in (5.2, 5.4)]
+    assert max(either) < second.next_at_most  # either frequency may be the next
 
 
 @pytest.mark.slow
@@ -475,3 +500,20 @@ def test_a_plan_of_one_motion_is_refused():
     plan = qa.evaluate_coefficients(TASK, [], profile=qa.shaped_cycloid(TASK, "zv"))
     with pytest.raises(ValueError, match="has one motion alone, and nothing to change"):
         qa.learn(plan, [recording(a_plan(), "tip")])
+
+
+# What swings
+
+
+@pytest.mark.slow
+def test_a_torque_tells_a_heavier_payload_from_a_softer_structure():
+    lighter = replace(TASK, plant=replace(AXIS, load=10.0))  # of 12 kg that swing on the machine
+    plan = qa.plan_move(lighter, qa.CycloidPolynomial(4), starts=1)
+    for signals in (("angle", "torque"), ("tip", "angle", "torque")):
+        learned = qa.learn(plan, [recording(plan, *signals, frequency=4.8)])
+        swings, moves = learned.inertias
+        assert swings.value == pytest.approx(1.2, abs=0.03)  # 12 of 10 kg
+        assert swings.low < 1.2 < swings.high
+        assert moves.value == pytest.approx(1.0, abs=0.01)
+        assert any(name == "what swings" for name, _ in learning_rows(plan, learned))
+    assert qa.learn(plan, [recording(plan, "tip", "angle", frequency=4.8)]).inertias == ()

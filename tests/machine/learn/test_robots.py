@@ -13,6 +13,7 @@ from quietarm.machine.learn.robots.joint_torques import SeenModes
 from quietarm.machine.learn.robots.robot_swing import read_robot_swing
 from quietarm.machine.recordings.read_recording import Columns
 from quietarm.machine.recordings.read_robot_recording import read_robot_recording
+from quietarm.models import JointMotion
 from quietarm.ocp import FileFormatError
 
 STEP = 0.002
@@ -77,6 +78,25 @@ def test_an_arm_that_rings_itself_is_told_from_the_swing_and_said(plant):
     assert "the arm itself rings after arrival" in note
     assert "and stays" in stays
     assert "fitted beside the swing" in note or "read from 0.65 s" in note
+
+
+def test_a_ring_of_the_arm_moves_the_tip_as_its_masses_say(plant):
+    # an arm that rings along its path, by three millimetres of the tip at 6 Hz
+    kinematics = plant.robot.kinematics(plant.robot.tip)
+    end, beside = (np.asarray(plant.path(place)).ravel() for place in (1.0, 1.0 - 1e-4))
+    tip_by_place = np.linalg.norm(kinematics.offset(beside, kinematics.pose(end))[0][:3]) / 1e-4
+    still, moved = (
+        np.array([float(t) for t in plant.torques(JointMotion(1.0, 0.0, a), *[[0.0, 0.0]] * 3)])
+        for a in (0.0, 1.0)
+    )
+    rate = 2 * np.pi * 6
+    size = 3e-3 / tip_by_place * rate**2
+    recording, modes = swinging(plant, 4e-3, noise=1e-3)
+    since = np.maximum(TIME - ARRIVAL, 0.0)
+    ring = np.exp(-0.2 * rate * since) * np.cos(rate * since) * (TIME > ARRIVAL)
+    torques = recording.torques + np.outer(ring, size * (moved - still))
+    _, found = read(replace(recording, torques=torques), modes)
+    assert found.other == pytest.approx(3e-3, rel=0.15)
 
 
 def test_large_swings_whose_frequency_depends_on_them_are_read_by_their_first_periods(plant):
