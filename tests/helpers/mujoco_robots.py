@@ -297,10 +297,14 @@ def motion_of(plan):
     s = plan.profile.motion(list(plan.coefficients), time / task.duration, *task.move)[0]
     ds = ca.jacobian(s, time)
     along = ca.Function("along", [time], [ca.vertcat(s, ds, ca.jacobian(ds, time))])
-    path = task.plant.path
+    return motion_along(task.plant.path, lambda at: along(at).full().ravel())
+
+
+def motion_along(path, along):
+    """(time) -> the same of a motion on a path: (time) -> place, speed and acceleration on it."""
 
     def motion(at):
-        place, speed, acceleration = along(at).full().ravel()
+        place, speed, acceleration = along(at)
         slope, bend = path(place, 1), path(place, 2)
         return path(place), slope * speed, slope * acceleration + bend * speed**2
 
