@@ -343,12 +343,12 @@ def lines(numbers: list[int]) -> Iterator[str]:
 def main() -> None:
     """Print what is named, or both."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", nargs="*", choices=["table", "figures"], default=[])
+    parser.add_argument("what", nargs="*", choices=["all", "table", "figures"], default="all")
     parser.add_argument("--only", nargs="+", type=int, choices=FIGURES, default=list(FIGURES))
     options = parser.parse_args()
-    if not options.what or "table" in options.what:
+    if "all" in options.what or "table" in options.what:
         table()
-    if not options.what or "figures" in options.what:
+    if "all" in options.what or "figures" in options.what:
         for line in lines(options.only):
             print(line, flush=True)
 
