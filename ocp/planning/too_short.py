@@ -111,4 +111,5 @@ def _passed(limit: Limit, peak: float, rows: Array) -> str:
     row = int(np.abs(rows).argmax())
     bound = limit.quantity.values.bounds[row]
     value = bound.value(float(rows[row]))
+    value = abs(value) if bound.lower == -bound.upper else value
     return f"{value:.4g} {bound.unit} at {bound.name}, above its limit of {bound.text}"
