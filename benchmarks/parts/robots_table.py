@@ -30,16 +30,26 @@ def read(results: Path) -> Rows:
     return rows
 
 
-def table(results: Path) -> str:
-    """Return a table for each figure: residual, energy, the largest share of a torque limit."""
+def tables(results: Path) -> dict[str, str]:
+    """Return the tables by their names on the page: of all motions, and of what was stated."""
     rows = read(results)
     parts = [
         ("residual [mm]", "residual_mm"),
         ("energy [J]", "energy_j"),
         ("peak torque, share of its limit [%]", "torque_share"),
     ]
-    tables = ["\n".join(_of_figure(rows, *part)) for part in parts]
-    return "\n\n".join([*tables, "\n".join(_against_stated(rows))]) + "\n"
+    of_figures = ("\n".join(_of_figure(rows, *part)) for part in parts)
+    return {"robots": "\n\n".join(of_figures), "stated": "\n".join(_against_stated(rows))}
+
+
+def with_tables(page: str, results: Path) -> str:
+    """Return a page whose tables are those of the results."""
+    for name, table in tables(results).items():
+        begin, end = f"<!-- {name} -->\n", f"<!-- /{name} -->"
+        before, rest = page.split(begin)
+        _, after = rest.split(end)
+        page = f"{before}{begin}\n{table}\n\n{end}{after}"
+    return page
 
 
 def _of_figure(rows: Rows, heading: str, column: str) -> Iterator[str]:
@@ -83,7 +93,7 @@ def _against_stated(rows: Rows) -> Iterator[str]:
                 label = f"{name}, `--in-full`" if kind == IN_FULL else name
                 cells = [f"{float(row['stated_mm']):.3f}", _short(row["in_full_mm"])]
                 cells += [_short(row["residual_mm"]), row["stated_j"]]
-                cells += [row["in_full_j"], row["energy_j"]]
+                cells += [row["in_full_j"] or "-", row["energy_j"]]
                 yield f"| {label} | {' | '.join(cells)} |"
 
 
