@@ -18,11 +18,11 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
 from mujoco_robots import FlexibleRobot, Truth, motion_of
+from parts.robot_motions import Array, Motion, rival
 from robots import (
     BAR,
     END,
@@ -40,12 +40,9 @@ from robots import (
 
 import quietarm as qa
 from quietarm.models import JointMotion, RobotOnPath
-from quietarm.studies.compare.toppra_motion import toppra_motion
 
-Array = NDArray[np.float64]
 TOPPRA_LEAST = 0.707
 """Of the fastest move [s]: toppra refuses less than 0.7069 s."""
-Motion = Callable[[float], tuple[Array, Array, Array]]
 DURATION = 1.0
 FASTEST = {
     "torque_limit": dict(zip(UR5_JOINTS, (150.0, 150.0, 150.0, 28.0, 28.0, 28.0))),
@@ -109,56 +106,18 @@ def quintic(at: float) -> tuple[float, float, float]:
     )
 
 
-def toppra_places(task: qa.PointToPoint) -> Callable[[float], tuple[float, float, float]]:
-    """Toppra in a task's duration: its path is one joint along the line as well."""
-    free = toppra_motion(task)
-    places, speeds = free.boundaries(0.0)
-
-    def place(at: float) -> tuple[float, float, float]:
-        piece = min(int(np.searchsorted(free.times, at, side="right")) - 1, free.steps - 1)
-        since = at - free.times[piece]
-        push = float(free.acceleration[piece])
-        speed = speeds[piece] + push * since
-        return places[piece] + since * (speeds[piece] + push * since / 2), speed, push
-
-    def still_after(at: float) -> tuple[float, float, float]:
-        return place(at) if at < free.times[-1] else (1.0, 0.0, 0.0)
-
-    return still_after
-
-
-def ruckig_places() -> Callable[[float], tuple[float, float, float]]:
-    """Ruckig in the same time: phase-synchronised joints are one joint along the line."""
-    from ruckig import InputParameter, Ruckig, Trajectory
-
-    longest = float(np.abs(END - START).max())
-    request = InputParameter(1)
-    trajectory = Trajectory(1)
-    request.current_position = [0.0]
-    request.target_position = [1.0]
-    request.max_velocity = [RIVALS["speed_limit"] / longest]
-    request.max_acceleration = [RIVALS["acceleration_limit"] / longest]
-    request.max_jerk = [150.0 / longest]
-    request.minimum_duration = DURATION
-    Ruckig(1).calculate(request, trajectory)
-    return lambda at: tuple(entry[0] for entry in trajectory.at_time(min(at, DURATION)))
-
-
 def table() -> None:
     """Energy and residual of the plan and its rivals, in MuJoCo."""
     task = move()
-    cycloid = qa.evaluate_coefficients(task, [])
     motions = {
         "plan": motion_of(planned()),
-        "cycloid": motion_of(cycloid),
+        "cycloid": rival("cycloid", task),
         "quintic": on_the_line(quintic),
-        "ruckig, phase-synchronised": on_the_line(ruckig_places()),
-        "toppra, stretched to 1 s": on_the_line(toppra_places(move(**RIVALS))),
+        "ruckig, phase-synchronised": rival("ruckig", move(**RIVALS, jerk_limit=150.0)),
+        "toppra, stretched to 1 s": rival("toppra", move(**RIVALS)),
     }
     for shaper in ("zv", "zvd"):
-        profile = qa.shaped_cycloid(task, shaper)
-        shaped = qa.evaluate_coefficients(task, [], profile=profile)
-        motions[f"{shaper.upper()} on the cycloid"] = motion_of(shaped)
+        motions[f"{shaper.upper()} on the cycloid"] = rival(shaper, task)
     truth = truth_of()
     print("| UR5 with a bar, 1 s, in MuJoCo | energy [J] | residual [mm] |")
     print("|---|---:|---:|")
@@ -227,8 +186,8 @@ def figure_6() -> str:
     fastest = qa.fastest_move(move(**FASTEST), qa.CycloidPolynomial(12))
     residual, _, _ = measured(fastest.plan, truth_of())
     unjerked = {name: limit for name, limit in FASTEST.items() if name != "jerk_limit"}
-    toppra = toppra_places(move(**unjerked, duration=TOPPRA_LEAST))
-    rung, _, _ = truth_of().residual_and_energy(on_the_line(toppra), TOPPRA_LEAST)
+    toppra = rival("toppra", move(**unjerked, duration=TOPPRA_LEAST))
+    rung, _, _ = truth_of().residual_and_energy(toppra, TOPPRA_LEAST)
     return (
         f"fastest with 12 terms, 0.79 s: {fastest.duration:.4f} s, {residual:.3f} mm; toppra, "
         f"whose jerk has no limit, {TOPPRA_LEAST} s, {1e3 * rung:.1f} mm"
@@ -384,12 +343,12 @@ def lines(numbers: list[int]) -> Iterator[str]:
 def main() -> None:
     """Print what is named, or both."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", nargs="*", choices=["table", "figures"], default=[])
+    parser.add_argument("what", nargs="*", choices=["all", "table", "figures"], default="all")
     parser.add_argument("--only", nargs="+", type=int, choices=FIGURES, default=list(FIGURES))
     options = parser.parse_args()
-    if not options.what or "table" in options.what:
+    if "all" in options.what or "table" in options.what:
         table()
-    if not options.what or "figures" in options.what:
+    if "all" in options.what or "figures" in options.what:
         for line in lines(options.only):
             print(line, flush=True)
 

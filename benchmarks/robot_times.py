@@ -25,12 +25,28 @@ ROBOT = """urdf: robot.urdf
 beam: {at: tool0, length: 0.8, width: 8mm, height: 12mm, youngs_modulus: 70GPa, density: 2700,
   tip_mass: 500g, damping: 0.5%}
 """
+JOINT_LIMITS = "joint_limits:\n" + "".join(
+    f"  {joint}: {{max_velocity: 3.0, max_acceleration: 14.0, max_jerk: 300.0}}\n"
+    for joint in ("shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint")
+)
+WAYPOINTS = """0.0,-1.40,1.70,-1.87,-1.57,0.0
+0.5,-1.35,1.50,-1.70,-1.45,0.2
+1.0,-1.20,1.35,-1.50,-1.30,0.4
+1.4,-1.00,1.20,-1.30,-1.20,0.6
+"""
+"""These and the limits are those of docs/robots.md."""
 LINE = "--start=0,-1.4,1.7,-1.87,-1.57,0 --target=1.4,-1,1.2,-1.3,-1.2,0.6"
 LIMITS = "--torque-limit 150 --speed-limit 3.15 --acceleration-limit 12 --jerk-limit 250"
 COMMANDS = {
     "plan, 1 s": f"plan robot.yaml {LINE} --duration 1",
     "plan, 1 s, 8 terms, load 10 % off": (
         f"plan robot.yaml {LINE} --duration 1 --terms 8 --error payload=10%"
+    ),
+    "plan, 1.2 s, waypoints within limits": (
+        "plan limited.yaml --path waypoints.csv --duration 1.2"
+    ),
+    "plan, 1.2 s, waypoints within limits, load 10 % off": (
+        "plan limited.yaml --path waypoints.csv --duration 1.2 --error payload=10%"
     ),
     "plan, fastest, 12 terms, within limits": (
         f"plan robot.yaml {LINE} --duration fastest --terms 12 {LIMITS}"
@@ -116,7 +132,7 @@ def main() -> None:
     """Print what is named, or both."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     choices = {"stages": stages, "commands": commands}
-    parser.add_argument("what", nargs="*", choices=[*choices, "in-stages"], default=[])
+    parser.add_argument("what", nargs="*", choices=["all", *choices, "in-stages"], default="all")
     asked = parser.parse_args().what
     if "in-stages" in asked:
         return in_stages()
@@ -127,7 +143,10 @@ def main() -> None:
         text = urdf_of("ur5_robot.urdf")
         (folder / "robot.urdf").write_text(text if isinstance(text, str) else text.read_text())
         (folder / "robot.yaml").write_text(ROBOT)
-        for name in asked or choices:
+        (folder / "limited.yaml").write_text(f"{ROBOT}limits: joint_limits.yaml\n")
+        (folder / "joint_limits.yaml").write_text(JOINT_LIMITS)
+        (folder / "waypoints.csv").write_text(WAYPOINTS)
+        for name in choices if "all" in asked else asked:
             choices[name](folder)
     return None
 

@@ -315,6 +315,15 @@ class JointBounds(NamedTuple):
     upper: float
     unit: str
 
+    @property
+    def text(self) -> str:
+        """The bounds in words, as 50 N m."""
+        return f"{_ends(self.lower, self.upper)} {self.unit}"
+
+    def value(self, share: float) -> float:
+        """Return the value that is such a share: -1 the least, 1 the largest."""
+        return (self.upper + self.lower) / 2 + share * (self.upper - self.lower) / 2
+
 
 @dataclass(frozen=True)
 class Shares:
@@ -336,8 +345,7 @@ class Shares:
     def __str__(self) -> str:
         names = dict[str, list[str]]()
         for bound in self.bounds:
-            ends = f"{_ends(bound.lower, bound.upper)} {bound.unit}"
-            names.setdefault(ends, []).append(bound.name)
+            names.setdefault(bound.text, []).append(bound.name)
         return "; ".join(f"{', '.join(joints)} {ends}" for ends, joints in names.items())
 
 

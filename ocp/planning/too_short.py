@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from quietarm.ocp.errors import InfeasibleTaskError
-from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
+from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED, Limit, Shares
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.rigid_motion import rigid_duration
 from quietarm.ocp.planning.rigid_pass import least_duration, values_at_rest
 from quietarm.ocp.task import PointToPoint
 
+Array = NDArray[np.float64]
 _OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", TORQUE_SPEED)
 _NO_MOVE = 1e3
 """So many times longer is no other duration of the same move: a unit was mistaken."""
@@ -92,10 +96,20 @@ def refuse_to_hold(task: PointToPoint) -> None:
             continue
         values = values_at_rest(task, limit)
         peaks = limit.peak(values.min(axis=0, initial=0.0), values.max(axis=0, initial=0.0))
-        for place, peak in zip(("start", "target"), peaks.tolist()):
+        for place, peak, rows in zip(("start", "target"), peaks.tolist(), values.T):
             if not limit.keeps(peak, OVERRUN):
                 raise InfeasibleTaskError(
                     f"to stand still at its {place} the machine takes {limit.label} "
-                    f"{limit.describe(peak)}, above the limit of {limit.bounds}; give a wider "
-                    f"limit or another {place}"
+                    f"{_passed(limit, peak, rows)}; give a wider limit or another {place}"
                 )
+
+
+def _passed(limit: Limit, peak: float, rows: Array) -> str:
+    """Words on a value that passes its limit; of limits by joint on the joint that does."""
+    if not isinstance(limit.quantity.values, Shares):
+        return f"{limit.describe(peak)}, above the limit of {limit.bounds}"
+    row = int(np.abs(rows).argmax())
+    bound = limit.quantity.values.bounds[row]
+    value = bound.value(float(rows[row]))
+    value = abs(value) if bound.lower == -bound.upper else value
+    return f"{value:.4g} {bound.unit} at {bound.name}, above its limit of {bound.text}"

@@ -142,6 +142,12 @@ class Evaluator:
         return np.array(self.tasks[0].scenarios, dtype=float)
 
     @cached_property
+    def limits(self) -> Mapping[str, Sequence[Limit]]:
+        """The limit of each task, by the name of what is limited."""
+        rows = [task.limits for task in self.tasks]
+        return {limits[0].name: limits for limits in zip(*rows)}
+
+    @cached_property
     def vibrations(self) -> list[FreeVibration]:
         """After arrival, in each of the task's own scenarios; of several tasks all at once."""
         if len(self.tasks) == 1:
@@ -302,30 +308,25 @@ class Evaluation:
     def limited_peaks(self) -> Mapping[str, Array]:
         """Peaks of the limited quantities, without the residual."""
         peaks: dict[str, Array] = {}
-        for limit in self.evaluator.tasks[0].limits:
-            sides = [entry.sides for entry in _limits_of(self.evaluator.tasks, limit.name)]
+        for name, limits in self.evaluator.limits.items():
+            sides = [limit.sides for limit in limits]
             below, above = np.array(sides).T[..., None]
-            least, largest = np.moveaxis(self.ranges[limit.name], -1, 0)
+            least, largest = np.moveaxis(self.ranges[name], -1, 0)
             by_scenario = np.maximum(least / below, largest / above)
             nominal = by_scenario[:, 0]
-            peaks[limit.name] = by_scenario.max(axis=1) if limit.quantity.in_scenarios else nominal
+            counts = limits[0].quantity.in_scenarios
+            peaks[name] = by_scenario.max(axis=1) if counts else nominal
         return peaks
 
     @property
     def violations(self) -> Array:
         """Each limited peak over its limit, less 1, shape (candidates, limits)."""
-        tasks = self.evaluator.tasks
         peaks = self.limited_peaks
         violations = np.empty((len(self.energy), len(peaks)))
-        for i, name in enumerate(peaks):
-            sizes = np.array([limit.size for limit in _limits_of(tasks, name)])
+        for i, (name, limits) in enumerate(self.evaluator.limits.items()):
+            sizes = np.array([limit.size for limit in limits])
             violations[:, i] = peaks[name] / sizes - 1
         return violations
-
-
-def _limits_of(tasks: Sequence[PointToPoint], name: str) -> list[Limit]:
-    """The limit of a quantity in each task."""
-    return [limit for task in tasks for limit in task.limits if limit.name == name]
 
 
 def _ends(values: Array) -> Array:

@@ -278,10 +278,17 @@ class Truth:
             accelerations, _ = self.accelerations(*motion(time), state[:count], state[count:])
             return np.concatenate([state[count:], accelerations])
 
+        def slopes(time, state):
+            """Of the rates by springs and dampers, which are what is stiff; Newton asks no more."""
+            q, _, _ = motion(time)
+            masses, _ = self._dynamics(self._positions(q, state[:count]), np.zeros(self.model.nv))
+            forces = np.hstack([np.diag(self.stiffness), np.diag(self.damping)])
+            changes = np.linalg.solve(masses[np.ix_(self.sprung, self.sprung)], -forces)
+            return np.vstack([np.hstack([np.zeros((count, count)), np.eye(count)]), changes])
+
         ends = (times[0], times[-1])
-        solved = solve_ivp(
-            rates, ends, begin, "LSODA", times, rtol=self.tolerance, atol=1e-2 * self.tolerance
-        )
+        tolerances = {"rtol": self.tolerance, "atol": 1e-2 * self.tolerance}
+        solved = solve_ivp(rates, ends, begin, "LSODA", times, jac=slopes, **tolerances)
         assert solved.success
         return solved.y
 
@@ -347,10 +354,14 @@ def motion_of(plan):
     s = plan.profile.motion(list(plan.coefficients), time / task.duration, *task.move)[0]
     ds = ca.jacobian(s, time)
     along = ca.Function("along", [time], [ca.vertcat(s, ds, ca.jacobian(ds, time))])
-    path = task.plant.path
+    return motion_along(task.plant.path, lambda at: along(at).full().ravel())
+
+
+def motion_along(path, along):
+    """(time) -> the same of a motion on a path: (time) -> place, speed and acceleration on it."""
 
     def motion(at):
-        place, speed, acceleration = along(at).full().ravel()
+        place, speed, acceleration = along(at)
         slope, bend = path(place, 1), path(place, 2)
         return path(place), slope * speed, slope * acceleration + bend * speed**2
 

@@ -135,6 +135,17 @@ def test_a_machine_that_cannot_hold_itself_is_told_what_it_takes(pendulum):
         qa.plan_move(PointToPoint(pendulum, math.pi / 2, 1.0, torque_limit=5.0))
 
 
+@pytest.mark.slow
+def test_the_joint_of_a_robot_that_cannot_hold_itself_is_named():
+    from robots import straight, ur5_with_bar
+
+    limits = {"shoulder_pan_joint": 150.0, "shoulder_lift_joint": 30.0, "elbow_joint": 150.0}
+
+    words = r"torque 4\d\.\d+ N m at shoulder_lift_joint, above its limit of 30 N m; give"
+    with pytest.raises(InfeasibleTaskError, match=words):  # 45.9 N m at most, by MuJoCo
+        qa.plan_move(ur5_with_bar().task(straight(), 1.0, torque_limit=limits))
+
+
 @pytest.fixture
 def pendulum():
     """An arm of 1 kg m that gravity pulls down, with a mode beside."""
