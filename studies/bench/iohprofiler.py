@@ -102,9 +102,9 @@ def _write(
 
 
 def _rows_of(history: History) -> np.ndarray:
-    """Return the improving marks of a run, whose first one counts one candidate: a reader begins there.
+    """Return the improving marks of a run, whose first one counts one candidate.
 
-    Before its first mark a run lacks everything.
+    A reader tells runs by that. Before its first mark a run lacks everything.
     """
     marks = np.column_stack([history.improving.evaluations, *history.improving[:2]])
     if not len(marks) or marks[0, 0] > 1:
