@@ -14,7 +14,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from quietarm.metaheuristics.problems.drawn_energies import energy_of
 from quietarm.models import (
     ArmOnFlexibleLink,
     DualLinkManipulator,
@@ -23,14 +22,14 @@ from quietarm.models import (
     Plant,
     SingleLinkManipulator,
 )
-from quietarm.ocp import CycloidPolynomial, PointToPoint
+from quietarm.ocp import AbsolutePower, CopperLoss, CycloidPolynomial, Energy, PointToPoint
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 TABLES = Path(__file__).parent / "drawn"
 TERMS = (2, 4, 6, 10, 16, 24)
 CENTRE = 6
-KINDS = ("copper", "stages")
-"""Energies beside the absolute power, on the moves with several kinds."""
+ENERGIES = {"absolute": AbsolutePower(), "copper": CopperLoss(0.12)}
+"""Energies by their names; copper losses are asked for on the moves with several kinds."""
 PEAKS = ("peak_torque", "peak_deflection")
 
 
@@ -49,7 +48,7 @@ class DrawnMove:
     terms : int
         Coefficients.
     kind : str
-        Energy, as of `energy_of`.
+        Energy, one of `ENERGIES`.
     limits : mapping of str to float
         Limits by their names in a task.
     peaks : tuple of str
@@ -68,7 +67,7 @@ class DrawnMove:
     @property
     def task(self) -> PointToPoint:
         """The move with its energy and limits."""
-        energy = energy_of(self.kind, self.plant, self.target, self.duration)
+        energy: Energy = ENERGIES[self.kind]
         limits: Any = self.limits or {}
         return PointToPoint(self.plant, self.target, self.duration, energy=energy, **limits)
 
@@ -112,8 +111,7 @@ def drawn_moves() -> Mapping[str, DrawnMove]:
             moves[words] = DrawnMove(plant, *numbers, limits=of_kind)
         if of_plant[plant.name] > 2:  # the first two moves of a plant have all kinds
             continue
-        for kind in KINDS:
-            moves[f"{name}-{CENTRE}-{kind}"] = DrawnMove(plant, *numbers, kind=kind)
+        moves[f"{name}-{CENTRE}-copper"] = DrawnMove(plant, *numbers, kind="copper")
         for count in (1, 2):
             words = f"{name}-{CENTRE}-absolute-{2 + count}-objectives"
             moves[words] = DrawnMove(plant, *numbers, peaks=PEAKS[:count])

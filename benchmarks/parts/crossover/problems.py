@@ -10,10 +10,10 @@ import pandas as pd
 
 import quietarm as qa
 from quietarm.metaheuristics import NamedProblem
-from quietarm.metaheuristics.problems.drawn_energies import energy_of
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
+from .energies import energy_of
 from .limits import limits_of
 from .moves import Move, draw, plants
 from .shared_terms import SharedTerms, scale_of_every_number

@@ -1,4 +1,4 @@
-"""Kinds of energy of drawn problems: in stages, and by a motor's map that jumps."""
+"""The kinds of objective beside the energies of quietarm: in stages, and by a motor's map."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from quietarm.metaheuristics.problems.function import MoveFunction
+import quietarm as qa
+from quietarm.metaheuristics import MoveFunction
 from quietarm.models import Plant
-from quietarm.ocp import AbsolutePower, CopperLoss, CycloidPolynomial, Energy, PointToPoint
 
 
 @dataclass(frozen=True)
-class Stages(Energy):
+class Stages(qa.Energy):
     """Power from a supply that rises in stages: a smooth staircase, flat at every whole stage."""
 
     name = "stages"
@@ -28,7 +28,7 @@ class Stages(Energy):
 
 
 @dataclass(frozen=True)
-class MotorMap(Energy):
+class MotorMap(qa.Energy):
     """Power of a motor whose efficiency is a table of cells: it jumps at their edges.
 
     Braking gives nothing back. The edges are shares of a torque and of a speed.
@@ -51,18 +51,18 @@ class MotorMap(Energy):
         return (power > 0) * power / efficiency
 
 
-def energy_of(kind: str, plant: Plant, target: float, duration: float) -> Energy:
+def energy_of(kind: str, plant: Plant, target: float, duration: float) -> qa.Energy:
     """The energy of a kind, scaled to what the plain cycloid of a move takes.
 
     A stage is half the plain cycloid's mean power; the map's edges are shares of its peaks.
     """
     if kind in ("absolute", "integer"):
-        return AbsolutePower()
+        return qa.AbsolutePower()
     if kind == "copper":
-        return CopperLoss(0.12)
-    task = PointToPoint(plant, target, duration)
+        return qa.CopperLoss(0.12)
+    task = qa.PointToPoint(plant, target, duration)
     function = MoveFunction(
-        task, CycloidPolynomial(6), bound=1.0, objectives=("residual", "energy", "peak_torque")
+        task, qa.CycloidPolynomial(6), bound=1.0, objectives=("residual", "energy", "peak_torque")
     )
     ((_, energy, torque),) = function(np.zeros((1, 6)))[0]
     if kind == "stages":
