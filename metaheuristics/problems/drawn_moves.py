@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -100,22 +100,29 @@ def drawn_moves() -> Mapping[str, DrawnMove]:
     moves = dict[str, DrawnMove]()
     of_plant = dict.fromkeys(plants, 0)
     for row in rows:
-        name = row["move"]
-        plant = plants[row["plant"]]
-        numbers = [float(row[column]) for column in ("target", "duration", "bound")]
-        of_plant[plant.name] += 1
-        for terms in TERMS:
-            moves[f"{name}-{terms}-absolute"] = DrawnMove(plant, *numbers, terms)
-        for kind, of_kind in limits[name].items():
-            words = f"{name}-{CENTRE}-absolute-{kind}"
-            moves[words] = DrawnMove(plant, *numbers, limits=of_kind)
-        if of_plant[plant.name] > 2:  # the first two moves of a plant have all kinds
-            continue
-        moves[f"{name}-{CENTRE}-copper"] = DrawnMove(plant, *numbers, kind="copper")
-        for count in (1, 2):
-            words = f"{name}-{CENTRE}-absolute-{2 + count}-objectives"
-            moves[words] = DrawnMove(plant, *numbers, peaks=PEAKS[:count])
+        of_plant[row["plant"]] += 1
+        move = DrawnMove(
+            plants[row["plant"]], float(row["target"]), float(row["duration"]), float(row["bound"])
+        )
+        every_kind = of_plant[row["plant"]] <= 2  # the first two moves of a plant
+        moves |= dict(_variants(row["move"], move, limits[row["move"]], every_kind))
     return moves
+
+
+def _variants(
+    name: str, move: DrawnMove, limits: Mapping[str, Mapping[str, float]], every_kind: bool
+) -> Iterator[tuple[str, DrawnMove]]:
+    """Yield the problems of a move by their names."""
+    for terms in TERMS:
+        yield f"{name}-{terms}-absolute", replace(move, terms=terms)
+    centre = f"{name}-{CENTRE}"
+    for kind, of_kind in limits.items():
+        yield f"{centre}-absolute-{kind}", replace(move, limits=of_kind)
+    if not every_kind:
+        return
+    yield f"{centre}-copper", replace(move, kind="copper")
+    for count in (1, 2):
+        yield f"{centre}-absolute-{2 + count}-objectives", replace(move, peaks=PEAKS[:count])
 
 
 def _limits() -> dict[str, dict[str, dict[str, float]]]:
