@@ -314,6 +314,7 @@ def problem_of(name: str) -> NamedProblem:
     raise ValueError(unknown("problem", name, PROBLEMS))
 
 
+@interruptible
 def drawn_problems() -> tuple[str, ...]:
     """Return the names of the problems of docs/results, which `problem_of` knows as well.
 
