@@ -92,6 +92,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         cell_of=cell_of,
         best_of=best_of,
         limits_over=limits_over,
+        gaussian_words=gaussian_words,
         ladder=LADDER,
         ways=WAYS,
         row_of=row_of,
@@ -157,6 +158,7 @@ def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None
     better = sum(row["moves_nearer"] for row in chosen)
     compared = sum(row["moves"] - row["no_control"] for row in chosen)
     return {
+        "kinds": len(kinds),
         "name": label.partition(" ")[0],
         "label": short_label(label),
         "search": range_of(row["missing"] for row in chosen),
@@ -168,6 +170,28 @@ def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None
             f"significant for {' and for '.join(clear) if clear else 'no kind of limit'}"
         ),
     }
+
+
+def gaussian_words(figures: Mapping[str, Any]) -> str:
+    """Say with what Gaussian processes were not run."""
+    with_limits = {
+        kind["budget"]: kind["limits"]
+        for kind in figures["limits"].values()
+        if row_of(kind["methods"], "gp")
+    }
+    alone = {
+        cell["budget"] for cell in figures["few"] if not cell["noise"]
+        and row_of(cell["methods"], "gp")
+    }  # fmt: skip
+    lacking = [
+        f"with limits and {spelled_budget(budget)} candidates"
+        for budget in (200, 1_000)
+        if budget not in with_limits
+    ]
+    lacking += ["with 1,000 candidates without limits"] * (1_000 not in alone)
+    if not lacking:
+        return "Gaussian processes were not run with more than 1,000 candidates."
+    return f"Gaussian processes were not run {', nor '.join(lacking)}."
 
 
 def range_of(values: Iterable[float]) -> str:
