@@ -13,6 +13,7 @@ import argparse
 import csv
 import sys
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -48,6 +49,7 @@ def by_tpe(arm: SimulatedArm, method: str, seed: int, candidates: int) -> Array:
     """The points of Optuna's tree-structured Parzen estimator that keep the constraints."""
     import optuna
 
+    warnings.simplefilter("ignore", FutureWarning)  # constraints of Optuna 4 are called so
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     limits = dict[int, list[float]]()
     sampler = optuna.samplers.TPESampler(

@@ -764,7 +764,6 @@ def black_box_figures(folder: Path) -> list[dict[str, Any]]:
             key = row["method"], int(row["candidates"])
             gaps[key].append(100 * (1 - area((found - least) / extent) / whole))
             seconds[key].append(float(row["seconds"]))
-        fewest = min(len(values) for (_, spent), values in gaps.items() if spent == 300)
         figures += [
             {
                 "problem": problem,
@@ -775,7 +774,6 @@ def black_box_figures(folder: Path) -> list[dict[str, Any]]:
                 "least": min(values),
                 "most": max(values),
                 "seconds": float(np.median(seconds[method, candidates])),
-                "fewest_runs": fewest,
             }
             for (method, candidates), values in gaps.items()
         ]

@@ -93,6 +93,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         best_of=best_of,
         limits_over=limits_over,
         gaussian_words=gaussian_words,
+        seed_words=seed_words,
         ladder=LADDER,
         ways=WAYS,
         row_of=row_of,
@@ -164,7 +165,8 @@ def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None
         "search": range_of(row["missing"] for row in chosen),
         "differences": range_of(row["control"] for row in chosen),
         "gradient": range_of(row["control"] for row in gradient),
-        "is_sure": bool(clear),
+        "clear": len(clear),
+        "is_sure": 2 * len(clear) >= len(kinds),
         "sure": (
             f"better than SLSQP on {better} of {compared} problems; "
             f"significant for {' and for '.join(clear) if clear else 'no kind of limit'}"
@@ -174,24 +176,28 @@ def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None
 
 def gaussian_words(figures: Mapping[str, Any]) -> str:
     """Say with what Gaussian processes were not run."""
-    with_limits = {
-        kind["budget"]: kind["limits"]
-        for kind in figures["limits"].values()
-        if row_of(kind["methods"], "gp")
-    }
-    alone = {
-        cell["budget"] for cell in figures["few"] if not cell["noise"]
-        and row_of(cell["methods"], "gp")
-    }  # fmt: skip
-    lacking = [
-        f"with limits and {spelled_budget(budget)} candidates"
-        for budget in (200, 1_000)
-        if budget not in with_limits
-    ]
-    lacking += ["with 1,000 candidates without limits"] * (1_000 not in alone)
+    kinds = {kind["limits"] for kind in figures["limits"].values()}
+    lacking = list[str]()
+    for budget in (200, 1_000):
+        run = [
+            kind["limits"]
+            for kind in figures["limits"].values()
+            if kind["budget"] == budget and row_of(kind["methods"], "gp")
+        ]
+        only = f" (but for {' and '.join(run)})".replace("-", ", ") if run else ""
+        if len(run) < len(kinds):
+            lacking.append(f"with limits and {spelled_budget(budget)} candidates{only}")
+    alone = {cell["budget"] for cell in figures["few"] if row_of(cell["methods"], "gp")}
+    if 1_000 not in alone:
+        lacking.append("with 1,000 candidates without limits")
     if not lacking:
         return "Gaussian processes were not run with more than 1,000 candidates."
     return f"Gaussian processes were not run {', nor '.join(lacking)}."
+
+
+def seed_words(count: int) -> str:
+    """Say how many seeds rows have, of which some have one."""
+    return "1" if count <= 1 else f"1 to {count}"
 
 
 def range_of(values: Iterable[float]) -> str:
