@@ -35,6 +35,11 @@ def parser() -> argparse.ArgumentParser:
     arguments.add_argument("--scheduler", help="address of a Dask scheduler, as tcp://host:8786")
     arguments.add_argument("--part", default="1/1", help="which part of how many, as 2/4")
     arguments.add_argument("--axis", nargs="*", default=[], help="only these")
+    arguments.add_argument("--methods", nargs="*", default=[], help="only these")
+    arguments.add_argument(
+        "--candidates", nargs="*", type=int, default=[], help="only runs of so many"
+    )
+    arguments.add_argument("--of-plant", type=int, help="only so many moves of each plant")
     arguments.add_argument("--rounds", type=int, default=15, help="only so many seeds")
     arguments.add_argument("--results", type=Path, default=RESULTS, help="where rows are kept")
     arguments.add_argument("--plan", action="store_true", help="count jobs and hours, run nothing")
@@ -54,7 +59,7 @@ def main(typed: list[str] | None = None) -> int:
     options = parser().parse_args(typed)
 
     from parts.crossover.problems import read_moves
-    from parts.crossover.run import describe, merge, part_of, print_plan, refuse_axes, run
+    from parts.crossover.run import describe, merge, part_of, print_plan, refuse_axes
 
     try:
         part = part_of(options.part)
@@ -79,9 +84,25 @@ def main(typed: list[str] | None = None) -> int:
         for method in options.tune:
             tune(method, moves, options.budget, options.trials, options.folder, table)
     else:
-        workers = options.scheduler or options.workers
-        return run(options.folder, options.results, workers, part, options.axis, options.rounds)
+        return run_missing(options, part)
     return 0
+
+
+def run_missing(options: argparse.Namespace, part: tuple[int, int]) -> int:
+    """Run what is missing of the plan; 1 where some jobs failed."""
+    from parts.crossover.run import missing_of, run_jobs_of
+
+    missing = missing_of(
+        options.results,
+        part,
+        options.axis,
+        options.rounds,
+        options.methods,
+        options.candidates,
+        options.of_plant,
+    )
+    workers = options.scheduler or options.workers
+    return int(run_jobs_of(missing, options.folder, options.results, workers) > 0)
 
 
 if __name__ == "__main__":

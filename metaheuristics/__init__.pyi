@@ -14,6 +14,7 @@ from .methods.presets import PRESETS as PRESETS
 from .methods.search_method import SearchMethod as SearchMethod
 from .problems.catalogue import PROBLEMS as PROBLEMS
 from .problems.catalogue import NamedProblem as NamedProblem
+from .problems.catalogue import drawn_problems as drawn_problems
 from .problems.catalogue import problem_of as problem_of
 from .problems.function import MoveFunction as MoveFunction
 from .problems.given_function import GivenFunction as GivenFunction

@@ -17,7 +17,7 @@ import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -304,16 +304,27 @@ def signed_ranks(differences: Array) -> float:
 
 def interval(values: Array, plants: Sequence[str], draws: int = 2000) -> tuple[float, float]:
     """Of the median over moves, 95 %: plants are drawn again, then moves of each."""
-    random = np.random.default_rng(52)
-    blocks = [values[np.array(plants) == plant] for plant in sorted(set(plants))]
-    medians = np.empty(draws)
-    for draw in range(draws):
-        chosen = random.integers(len(blocks), size=len(blocks))
-        medians[draw] = np.median(
-            np.concatenate([random.choice(blocks[i], len(blocks[i])) for i in chosen])
-        )
+    places, counts = drawn_again(tuple(plants), draws)
+    drawn = np.sort(np.append(values, np.inf)[places], axis=1)  # what is beyond a count is last
+    rows = np.arange(draws)
+    medians = (drawn[rows, (counts - 1) // 2] + drawn[rows, counts // 2]) / 2
     low, high = np.quantile(medians, [0.025, 0.975])
     return float(low), float(high)
+
+
+@cache
+def drawn_again(plants: tuple[str, ...], draws: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Places of moves in each draw of plants and moves, -1 beyond their count; and the counts."""
+    random = np.random.default_rng(52)
+    blocks = [np.flatnonzero(np.array(plants) == plant) for plant in sorted(set(plants))]
+    places = np.full((draws, len(blocks) * max(map(len, blocks))), -1)
+    counts = np.empty(draws, dtype=np.intp)
+    for draw in range(draws):
+        chosen = random.integers(len(blocks), size=len(blocks))
+        moves = np.concatenate([random.choice(blocks[i], len(blocks[i])) for i in chosen])
+        counts[draw] = len(moves)
+        places[draw, : len(moves)] = moves
+    return places, counts
 
 
 Rival = Callable[[str, float], list[Run]]
@@ -481,7 +492,7 @@ def limit_figures(results: Results) -> dict[str, dict[str, Any]]:
     figures = dict[str, dict[str, Any]]()
     for limits in LIMITS:
         problems = results.problems(kind=f"absolute-{limits}")
-        for budget in (1_000, 10_000):
+        for budget in (200, 1_000, 10_000):
             methods = searches_in(results, ("limits",), budget, problems, 5)
             if not methods:
                 continue
@@ -669,6 +680,104 @@ def attained(results: Results, problems: Sequence[str], labels: Sequence[tuple[s
         if total:
             shares[label] = [float(share) for share in reached / total]
     return shares
+
+
+def runtime_profiles(results: Results) -> dict[str, Any]:
+    """Share of targets attained over candidates per coefficient, as COCO's runtime profiles.
+
+    Six coefficients and 10,000 candidates, without and with limits. A run's values are those of 50
+    points at its marks. Runs are not restarted: one that ends above a target never attains it. The
+    best of all is, for each problem and target, the method whose runs need the fewest candidates in
+    the median.
+    """
+    per_coefficient = np.logspace(0, np.log10(10_000 / CENTRE), 61)
+    targets = np.logspace(np.log10(50), 0, 51)
+    limited = [name for kind in LIMITS for name in results.problems(kind=f"absolute-{kind}")]
+    profiles = dict[str, dict[str, list[float]]]()
+    problems_of = dict[str, int]()
+    for title, axis, problems in (
+        ("no limits", "centre", results.problems()),
+        ("limits", "limits", limited),
+    ):
+        labels = [label for label, _ in searches_in(results, (axis,), 10_000, problems, 10)]
+        labels = [label for label in labels if "memetic" not in label and "polish" not in label]
+        of_all = [name for name in problems if all(results.of(m, 10_000, name) for m in labels)]
+        if not (labels and of_all):
+            continue
+        spent = {label: candidates_to(results, of_all, label, targets) for label in labels}
+        spent["best of all"] = np.min([np.median(rows, axis=1) for rows in spent.values()], axis=0)
+        problems_of[title] = len(of_all)
+        profiles[title] = {
+            label: [float((rows <= limit * CENTRE).mean()) for limit in per_coefficient]
+            for label, rows in spent.items()
+        }
+    return {
+        "per_coefficient": per_coefficient.tolist(),
+        "targets": [float(targets[0]), float(targets[-1]), len(targets)],
+        "problems": problems_of,
+        "shares": profiles,
+    }
+
+
+def candidates_to(results: Results, problems: Sequence[str], label: str, targets: Array) -> Array:
+    """Candidates of a method's runs until each target, shape (problems, runs, targets).
+
+    Infinite where a run never attains it. Of each problem as many runs count as every one has.
+    """
+    of_problem = [results.of(label, 10_000, name) for name in problems]
+    count = min(map(len, of_problem))
+    rows = list[list[Array]]()
+    for name, runs in zip(problems, of_problem, strict=True):
+        rows.append([])
+        for run in runs[:count]:
+            lacks = 100 * (1 - run.marks[:, 2] / results.whole[name])
+            lowest = np.minimum.accumulate(np.append(np.inf, lacks))[1:]
+            first = np.searchsorted(-lowest, -targets)
+            rows[-1].append(np.append(run.marks[:, 0], np.inf)[first])
+    return np.array(rows)
+
+
+def black_box_figures(folder: Path) -> list[dict[str, Any]]:
+    """Gaps on black boxes, of the points alone, to the best points of all runs [%].
+
+    The scale goes from the least to the largest values of those points.
+    """
+    path = folder / "black_box.csv"
+    if not path.exists():
+        return []
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    figures = list[dict[str, Any]]()
+    for problem in dict.fromkeys(row["problem"] for row in rows):
+        of_problem = [row for row in rows if row["problem"] == problem]
+        points = [
+            np.column_stack([numbers(row["residuals_mm"]), numbers(row["energies_mJ"])])
+            for row in of_problem
+        ]
+        best = moocore.filter_dominated(np.vstack(points))
+        least = best.min(axis=0)
+        extent = np.ptp(best, axis=0)
+        whole = area((best - least) / extent)
+        gaps = defaultdict[tuple[str, int], list[float]](list)
+        seconds = defaultdict[tuple[str, int], list[float]](list)
+        for row, found in zip(of_problem, points, strict=True):
+            key = row["method"], int(row["candidates"])
+            gaps[key].append(100 * (1 - area((found - least) / extent) / whole))
+            seconds[key].append(float(row["seconds"]))
+        figures += [
+            {
+                "problem": problem,
+                "method": method,
+                "candidates": candidates,
+                "runs": len(values),
+                "missing": float(np.median(values)),
+                "least": min(values),
+                "most": max(values),
+                "seconds": float(np.median(seconds[method, candidates])),
+            }
+            for (method, candidates), values in gaps.items()
+        ]
+    return figures
 
 
 def repeats(results: Results) -> dict[str, int]:
@@ -1087,6 +1196,8 @@ def compute(folder: Path) -> dict[str, Any]:
             "shares": attained(results, centre, methods, times),
             "drawn": DRAWN,
         },
+        "profiles": runtime_profiles(results),
+        "black_box": black_box_figures(folder),
         "prediction": {
             measure: prediction(results, 10_000, crossed, measure)
             for measure in MEASURES

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.interrupts import interruptible
+from quietarm.metaheuristics.problems.drawn_moves import drawn_moves
 from quietarm.metaheuristics.problems.function import MoveFunction
 from quietarm.metaheuristics.problems.problem_function import ProblemFunction
 from quietarm.models import ArmOnFlexibleLink, DualLinkManipulator, Plant, SingleLinkManipulator
@@ -305,10 +306,27 @@ def front_by_gradient(
 
 @interruptible
 def problem_of(name: str) -> NamedProblem:
-    """A named problem; ValueError suggests the nearest one."""
-    if name not in PROBLEMS:
-        raise ValueError(unknown("problem", name, PROBLEMS))
-    return PROBLEMS[name]
+    """A named problem, or a drawn one of docs/results; ValueError suggests the nearest one."""
+    if name in PROBLEMS:
+        return PROBLEMS[name]
+    if name in drawn_moves():
+        return _drawn_problem(name)
+    raise ValueError(unknown("problem", name, PROBLEMS))
+
+
+@interruptible
+def drawn_problems() -> tuple[str, ...]:
+    """Return the names of the problems of docs/results, which `problem_of` knows as well.
+
+    Their reference fronts are found by the gradient when they are asked for.
+    """
+    return tuple(drawn_moves())
+
+
+@cache
+def _drawn_problem(name: str) -> NamedProblem:
+    move = drawn_moves()[name]
+    return NamedProblem(name, move.task, move.profile, move.bound, objectives=move.objectives)
 
 
 def _task(plant: Plant, target: float, duration: float, start: float = 0.0) -> PointToPoint:

@@ -213,6 +213,7 @@ def test_pictures_say_what_is_seen_in_colours_of_the_grammar():
         pictures.coefficients_figure(figures["map_rows"]),
         pictures.budget_figure(figures["map_rows"]),
         pictures.attained_figure(figures["attained"]),
+        pictures.profiles_figure(figures["profiles"]),
         pictures.kinds_figure(figures["kinds"]),
         pictures.noise_figure(figures["noise"]),
         pictures.features_figure(figures["prediction"]),
@@ -236,6 +237,19 @@ def test_the_page_and_what_to_take_are_those_of_the_template(name):
     text = page.page_of(name, figures, RESULTS)
     published = (RESULTS / name).read_text()
     assert of_size.sub("", text) == of_size.sub("", published)
+
+
+def test_runtime_profiles_rise_and_end_as_the_table_says():
+    profiles = json.loads((RESULTS / "figures.json").read_text())["profiles"]
+    page_text = (RESULTS / "appendix.md").read_text()
+    for title, rows in profiles["shares"].items():
+        for shares in rows.values():
+            assert (np.diff(shares) >= 0).all()
+            assert 0 <= shares[0] <= shares[-1] <= 1
+        (line,) = re.findall(rf"\| {title}, share attained .*", page_text)
+        of_table = [float(cell) for cell in line.split("|")[2:-1]]
+        ends = [100 * rows[name][-1] for name in profiles["shares"]["limits"]]
+        assert of_table == pytest.approx(ends, abs=0.5)
 
 
 @pytest.mark.slow

@@ -92,6 +92,8 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         cell_of=cell_of,
         best_of=best_of,
         limits_over=limits_over,
+        gaussian_words=gaussian_words,
+        seed_words=seed_words,
         ladder=LADDER,
         ways=WAYS,
         row_of=row_of,
@@ -157,17 +159,45 @@ def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None
     better = sum(row["moves_nearer"] for row in chosen)
     compared = sum(row["moves"] - row["no_control"] for row in chosen)
     return {
+        "kinds": len(kinds),
         "name": label.partition(" ")[0],
         "label": short_label(label),
         "search": range_of(row["missing"] for row in chosen),
         "differences": range_of(row["control"] for row in chosen),
         "gradient": range_of(row["control"] for row in gradient),
-        "is_sure": bool(clear),
+        "clear": len(clear),
+        "is_sure": 2 * len(clear) >= len(kinds),
         "sure": (
             f"better than SLSQP on {better} of {compared} problems; "
             f"significant for {' and for '.join(clear) if clear else 'no kind of limit'}"
         ),
     }
+
+
+def gaussian_words(figures: Mapping[str, Any]) -> str:
+    """Say with what Gaussian processes were not run."""
+    kinds = {kind["limits"] for kind in figures["limits"].values()}
+    lacking = list[str]()
+    for budget in (200, 1_000):
+        run = [
+            kind["limits"]
+            for kind in figures["limits"].values()
+            if kind["budget"] == budget and row_of(kind["methods"], "gp")
+        ]
+        only = f" (but for {' and '.join(run)})".replace("-", ", ") if run else ""
+        if len(run) < len(kinds):
+            lacking.append(f"with limits and {spelled_budget(budget)} candidates{only}")
+    alone = {cell["budget"] for cell in figures["few"] if row_of(cell["methods"], "gp")}
+    if 1_000 not in alone:
+        lacking.append("with 1,000 candidates without limits")
+    if not lacking:
+        return "Gaussian processes were not run with more than 1,000 candidates."
+    return f"Gaussian processes were not run {', nor '.join(lacking)}."
+
+
+def seed_words(count: int) -> str:
+    """Say how many seeds rows have, of which some have one."""
+    return "1" if count <= 1 else f"1 to {count}"
 
 
 def range_of(values: Iterable[float]) -> str:

@@ -58,6 +58,10 @@ LOOK_OF: Mapping[str, Look] = {
 """Of the methods that several pictures have."""
 
 
+PROFILED = ("best of all", "slsqp", "moead-de", "mo-cma-es", "gde3", "nsga2")
+"""What the picture of runtime profiles shows."""
+
+
 def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
     """All pictures of a page."""
     drawn = {
@@ -70,6 +74,8 @@ def write_pictures(figures: Mapping[str, Any], folder: Path) -> None:
         "kinds.png": kinds_figure(figures["kinds"]),
         "features.png": features_figure(figures["prediction"]),
     }
+    if len(figures["profiles"]["shares"]) == 2:
+        drawn["profiles.png"] = profiles_figure(figures["profiles"])
     if any(figures["noise"].values()):
         drawn["noise.png"] = noise_figure(figures["noise"])
     for_phones = {
@@ -361,6 +367,35 @@ def attained_figure(attained: Mapping[str, Any]) -> Figure:
     series = {short_label(name): (attained["seconds"], values) for name, values in shares.items()}
     labelled_lines(ax, series, log_y=False)
     ax.set(xlabel="processor time [s]", ylabel="share of targets attained")
+    return figure
+
+
+def profiles_figure(profiles: Mapping[str, Any]) -> Figure:
+    """Share of targets attained over candidates per coefficient, without and with limits."""
+    figure = new_figure(9.5, 4.4)
+    candidates = profiles["per_coefficient"]
+    shares = profiles["shares"]
+    ends = {
+        name: {title: 100 * rows[name][-1] for title, rows in shares.items()}
+        for name in ("slsqp", "moead-de")
+    }
+    head(
+        figure,
+        f"With 10,000 candidates MOEA/D-DE attains {two_digits(ends['moead-de']['no limits'])} % "
+        f"of the targets, SLSQP {two_digits(ends['slsqp']['no limits'])} %; with limits "
+        f"{two_digits(ends['moead-de']['limits'])} and {two_digits(ends['slsqp']['limits'])} %",
+        f"{profiles['targets'][2]} targets on every problem, from a gap of "
+        f"{profiles['targets'][0]:.0f} to {profiles['targets'][1]:.0f} %; six coefficients",
+    )
+    for ax, (title, rows) in zip(figure.subplots(1, 2), shares.items(), strict=True):
+        ax.set_xscale("log")
+        ax.set_ylim(0, 1.0)
+        series = {short_label(name): (candidates, rows[name]) for name in PROFILED if name in rows}
+        labelled_lines(ax, series, log_y=False)
+        ax.set_xlim(10, None)
+        ax.set(xlabel="candidates per coefficient", ylabel="share of targets attained")
+        problems = profiles["problems"][title]
+        ax.set_title(f"{title}, {problems} problems", **TITLE)
     return figure
 
 

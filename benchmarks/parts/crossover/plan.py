@@ -221,18 +221,36 @@ def limited(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                     small = budget == BUDGETS[0] and method in AT_FEW
                     settings = SMALL_POPULATION if small else own(method, budget)
                     yield Planned("limits", seed, case, method, budget, settings)
-            yield Planned("limits", seed, case, "es", BUDGETS[0])
+            for method in FOR_FEW:
+                yield Planned("limits", seed, case, method, BUDGETS[0])
+            yield from limited_with_few(case, seed)
+
+
+def limited_with_few(case: Case, seed: int) -> Iterator[Planned]:
+    """Methods for few candidates, and finite-difference SLSQP, with 200 candidates and limits."""
+    for method in FOR_FEW:
+        yield Planned("limits", seed, case, method, FEW)
+    for method in SMALL:
+        yield Planned("limits", seed, case, method, FEW, SMALL_POPULATION)
+    yield Planned("limits", seed, case, "slsqp", FEW)
 
 
 def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
-    """200 candidates, without and with noise; with noise 1,000 as well."""
+    """200 candidates, without and with noise; with noise 1,000 as well.
+
+    Without noise only the methods for few candidates are run with 1,000 here: the others are in
+    the map.
+    """
+    for move in moves:
+        for method in FOR_FEW:
+            yield Planned("few", seed, Case(move), method, BUDGETS[0])
     for share in (0.0, NOISES[0]):
         for budget in (FEW, *BUDGETS[:1]) if share else (FEW,):
             for move in moves:
                 case = Case(move)
                 for method in AT_FEW:
                     yield Planned("few", seed, case, method, budget, SMALL_POPULATION, share)
-                for method in FOR_FEW if budget == FEW else FOR_FEW[:1]:
+                for method in FOR_FEW:
                     yield Planned("few", seed, case, method, budget, noise=share)
                 yield Planned("few", seed, case, "random", budget, noise=share)
                 settings = (("step", WIDE_STEPS[0]),) if share else ()

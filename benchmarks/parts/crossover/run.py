@@ -14,7 +14,7 @@ from quietarm.metaheuristics import Job, LostJobsError, run_jobs
 
 from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
-from .plan import AXES, Planned, rounds
+from .plan import AXES, Planned, first_of_plants, rounds
 from .problems import CENTRE_TERMS, read_moves
 from .shared_terms import front_of_every_number
 from .tables import best_settings, write_table
@@ -72,9 +72,17 @@ def missing_of(
     part: tuple[int, int] = (1, 1),
     axes: Sequence[str] = (),
     most_rounds: int | None = None,
+    methods: Sequence[str] = (),
+    candidates: Sequence[int] = (),
+    of_plant: int | None = None,
 ) -> list[Planned]:
-    """Return what is to be run still."""
+    """Return what is to be run still, of the axes, methods and budgets that are given.
+
+    And on so many moves of each plant.
+    """
     plan = plan_of(results)
+    tested = [move for move in read_moves(results / "moves.csv") if not move.tuning]
+    moves = {move.name for move in first_of_plants(tested, of_plant or len(tested))}
     done = done_keys(results)
     of_part = plan[part[0] - 1 :: part[1]]
     return [
@@ -83,6 +91,9 @@ def missing_of(
         if planned.key not in done
         and (not axes or planned.axis in axes)
         and (most_rounds is None or planned.round < most_rounds)
+        and (not methods or planned.method in methods)
+        and (not candidates or planned.budget in candidates)
+        and planned.case.move.name in moves
     ]
 
 
@@ -91,20 +102,6 @@ def batches(missing: Iterable[Planned]) -> Iterator[list[Planned]]:
     remaining = iter(missing)
     while batch := list(islice(remaining, BATCH)):
         yield batch
-
-
-def run(
-    folder: Path,
-    results: Path,
-    workers: int | str,
-    part: tuple[int, int],
-    axes: Sequence[str],
-    most_rounds: int,
-) -> int:
-    """Run what is missing of the plan; 1 where some jobs failed."""
-    return int(
-        run_jobs_of(missing_of(results, part, axes, most_rounds), folder, results, workers) > 0
-    )
 
 
 def run_jobs_of(

@@ -20,6 +20,7 @@ LABELS = {
     "slsqp": "SLSQP",
     "slsqp continuation=False": "SLSQP, random starts",
     "slsqp step=0.01": "SLSQP, steps of 1 % of the box",
+    "tpe": "TPE of Optuna",
     "slsqp step=0.1": "SLSQP, steps of 10 % of the box",
 }
 RANDOM_STARTS = "continuation=False"

@@ -28,6 +28,8 @@ from quietarm.studies.cli.quantities import read_settings
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from quietarm.studies.bench.results import Results
 
 
@@ -58,6 +60,8 @@ def read_evaluations(text: str | int) -> int | None:
     option("--output", "-o", type=Parsed("folder", check_folder), required=True,
            help="Folder for runs and report; runs that are there are kept, and so is a report that "
            "has more."),
+    option("--iohprofiler", is_flag=True, help="Also write the runs for IOHprofiler's analyser, "
+           "into the folder iohprofiler of --output."),
     PART, WORKERS, SCHEDULER, YES,
 )  # fmt: skip
 def bench(given: Given) -> None:
@@ -142,7 +146,10 @@ def bench(given: Given) -> None:
             fronts = dict(error.fronts)
             trouble = error
     if fronts or trouble is None:
-        _report(Results.of_jobs(fronts, imported), given)
+        results = Results.of_jobs(fronts, imported)
+        _report(results, given)
+        if given.iohprofiler:
+            _write_iohprofiler(results, given.output / "iohprofiler")
     if trouble is not None:
         others = list(trouble.failures.items())[1:]
         print_lines(progress_console(), *(f"{name}: {why}" for name, why in others))
@@ -171,3 +178,13 @@ def _report(results: Results, given: Given) -> None:
         if lost
         else f"wrote report.md and {len(files) - 1} tables and pictures to {given.output}"
     )
+
+
+def _write_iohprofiler(results: Results, folder: Path) -> None:
+    """Write the runs for IOHprofiler's analyser, and say what it has not."""
+    from quietarm.studies.bench.iohprofiler import write_iohprofiler
+    from quietarm.views.report.words import counted
+
+    written, left_out = write_iohprofiler(results, folder)
+    without = f"; {', '.join(left_out)}: left out, counts no candidates" if left_out else ""
+    click.echo(f"wrote {counted(len(written), 'file')} for IOHprofiler to {folder}{without}")

@@ -1,0 +1,72 @@
+"""Runs of a bench in IOHprofiler's format, read as its documentation says."""
+
+import json
+
+import numpy as np
+import pytest
+
+from quietarm.metaheuristics import Job, NamedProblem, problem_of
+from quietarm.studies.bench.iohprofiler import write_iohprofiler
+from quietarm.studies.bench.results import Results
+from quietarm.studies.bench.running_times import History, expected_running_time
+
+SMALL = "single-link-30deg-0.8s-2-terms"
+
+
+def read(path):
+    """A description, and the rows of each of its runs: a heading stands before every run."""
+    described = json.loads(path.read_text())
+    runs = {}
+    for scenario in described["scenarios"]:
+        blocks = (path.parent / scenario["path"]).read_text().split("evaluations ")[1:]
+        tables = [np.array([line.split() for line in block.splitlines()[1:]], float)
+                  for block in blocks]  # fmt: skip
+        assert len(tables) == len(scenario["runs"])
+        runs[scenario["dimension"]] = list(zip(scenario["runs"], tables))
+    return described, runs
+
+
+@pytest.fixture(scope="module")
+def results():
+    """A search on one problem."""
+    reference = problem_of(SMALL).fronts()[0]
+    problem = NamedProblem.of_front("mine = 1", reference)
+    jobs = [
+        *(Job(problem, "nsga2", seed, 300, {"population": 20}) for seed in range(3)),
+    ]
+    return Results.of_jobs({job: job.run() for job in jobs})
+
+
+def test_running_times_follow_from_what_was_written(results, tmp_path):
+    (path,), left_out = write_iohprofiler(results, tmp_path)
+    assert left_out == ()
+    assert path == tmp_path / "nsga2-population-20" / "IOHprofiler_f1_mine-1.json"
+    described, runs = read(path)
+    assert described["algorithm"]["name"] == "nsga2(population=20)"
+    assert described["function_name"] == "mine = 1"
+    histories = []
+    for stated, table in runs[2]:
+        # the reader of IOHprofiler tells runs by their first candidate
+        assert table[0, 0] == 1
+        assert (np.diff(table[:, 0]) > 0).all()
+        assert stated["evals"] == table[-1, 0] == 300
+        assert stated["best"]["y"] == pytest.approx(table[:, 1].min(), abs=1e-9)
+        histories.append(History(table[:, 1], table[:, 2], table[:, 0]))
+    assert [stated["instance"] for stated, _ in runs[2]] == [1, 2, 3]
+    (name,) = results.problems
+    expected = results.expected_running_time(name.name, "nsga2(population=20)", 0.1, "evaluations")
+    assert expected_running_time(histories, 0.1, "evaluations") == expected
+
+
+@pytest.mark.slow
+def test_the_command_writes_it_beside_its_report(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, shown, _ = call(
+        f"bench {SMALL} --methods random,epsilon --setting epsilon.points=5 --runs 1 "
+        "--evaluations 100 --iohprofiler --output bench"
+    )
+    assert code == 0
+    assert "wrote 1 file for IOHprofiler" in shown
+    assert "epsilon(points=5): left out, counts no candidates" in shown
+    (path,) = (tmp_path / "bench" / "iohprofiler").rglob("*.json")
+    assert read(path)[0]["function_name"] == SMALL
