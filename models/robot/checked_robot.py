@@ -234,17 +234,19 @@ class CheckedRobot(MovingRobot):
     def _check_measured(self) -> None:
         if self.measured is None:
             return
-        several = not isinstance(self.measured, Measured)
-        given = tuple(self.measured) if several else (self.measured,)
-        if not given:
+        if isinstance(self.measured, Measured):
+            self._set("measured", self._measurement(self.measured, "measured"))
+            return
+        if not isinstance(self.measured, Sequence):
+            raise TypeError(f"measured is {quoted(self.measured)}; give Measured(frequency, at)")
+        if not self.measured:
             raise ValueError("measured is an empty list; give frequencies, or leave it out")
-        names = [f"{number} of measured" for number in range(1, len(given) + 1)]
         checked = [
-            self._measurement(one, name if several else "measured")
-            for one, name in zip(given, names)
+            self._measurement(one, f"{number} of measured")
+            for number, one in enumerate(self.measured, 1)
         ]
         _refuse_contradictions(checked)
-        self._set("measured", tuple(checked) if several else checked[0])
+        self._set("measured", tuple(checked))
 
     def _measurement(self, one: Measured, what: str) -> Measured:
         """A measured frequency whose numbers are in range, at positions of all joints."""
