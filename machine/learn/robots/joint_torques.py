@@ -54,7 +54,7 @@ class SeenModes(TipModes):
         )
         return rows
 
-    @cached_property
+    @property
     def tip_by_torques(self) -> Array:
         """Acceleration of the tip by torques that accelerate the joints (3, joints).
 
