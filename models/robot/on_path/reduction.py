@@ -144,9 +144,9 @@ class Reduction:
         still = np.zeros_like(sag)
         stiffness = self.dynamics.stiffness_at(q, sag)[1]
         by_q, _ = self._second(at, np.hstack([slope, still]), np.hstack([bend, still]))
-        first = -np.linalg.solve(stiffness, by_q[..., None])[..., 0]
+        first = np.asarray(-np.linalg.solve(stiffness, by_q[..., None])[..., 0], float)
         _, curved = self._second(at, np.hstack([slope, first]), np.hstack([bend, still]))
-        second = -np.linalg.solve(stiffness, curved[..., None])[..., 0]
+        second = np.asarray(-np.linalg.solve(stiffness, curved[..., None])[..., 0], float)
         return first, second, self._tip_rows(q, sag)
 
     @cached_property
