@@ -145,7 +145,7 @@ def made_by_command(command: Command, name: str, quick: bool) -> Picture:
     figure = None
     for line in (*command.before, command.line):
         with drawn_figures() as figures, ending_well():
-            main([*shlex.split(line)[1:], "--quiet", *(_quicker(line) if quick else [])])
+            main([*(_quicker(line) if quick else shlex.split(line))[1:], "--quiet"])
         figure = figures[-1] if figures else figure
     assert figure is not None
     return _picture_of(figure, name, Path(OF_COMMAND.get(name, name)), quick)
@@ -186,8 +186,14 @@ FOR_PHONES: Mapping[str, Callable[[Figure], Figure | None]] = {"robot.png": torq
 
 
 def _quicker(line: str) -> list[str]:
-    """Options by which a film shows the same in less time."""
-    return ["--rate", "4", "--width", "240"] if line.endswith(".gif") else []
+    """Words of a command; those of a film are such that it shows the same in less time."""
+    words = shlex.split(line)
+    if not line.endswith(".gif"):
+        return words
+    quick = {"--rate": "4", "--width": "240"}
+    given = {place for place, word in enumerate(words) if word in quick}
+    kept = [word for place, word in enumerate(words) if not {place, place - 1} & given]
+    return [*kept, *(word for option in quick.items() for word in option)]
 
 
 def python_of(name: str) -> str | None:

@@ -16,8 +16,9 @@ const viewOf = ({ width, height, margin }) => {
   const [ce, se] = [Math.cos(camera.elevation), Math.sin(camera.elevation)];
   // from whatever side, all of the room is in the picture
   const above = (up, towards) => (away * (ce * up - se * towards)) / (away - ce * towards - se * up);
-  const [top, bottom] = [Math.max(above(half, -reach), above(half, reach)), above(-half, reach)];
-  const wide = (away * reach) / (away - reach);
+  const heights = [half, -half].flatMap((up) => [above(up, reach), above(up, -reach)]);
+  const [top, bottom] = [Math.max(...heights), Math.min(...heights)];
+  const wide = (away * reach) / Math.sqrt((away - se * half) ** 2 - (ce * reach) ** 2);
   const scale = Math.min((width / 2 - margin) / wide, (height - 2 * margin) / (top - bottom));
   const level = (height + scale * (top + bottom)) / 2;
   return ([px, py, pz]) => {

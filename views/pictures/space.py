@@ -53,7 +53,8 @@ class Room:
         low[2] = min(feet, default=low[2])
         middle = (low + high) / 2
         across = [
-            np.linalg.norm(part.points[..., :2] - middle[:2], axis=-1).max() for part in parts
+            np.linalg.norm(part.points[..., :2] - middle[:2], axis=-1).max() + part.radius
+            for part in parts
         ]
         plant = structures[0].line.plan.task.plant
         return cls(middle, float(max(across)) or 1.0, float(high[2] - low[2]) / 2, plant.seen_from)
