@@ -1,4 +1,4 @@
-"""Results of `benchmarks/robots.py`, and the tables that the page of evidence shows of them."""
+"""Results of `benchmarks/ten_robots.py`, and the tables that the page of evidence shows of them."""
 
 from __future__ import annotations
 
