@@ -1,4 +1,4 @@
-"""Results of `benchmarks/robots.py`, and the tables that the page of evidence shows of them."""
+"""Results of `benchmarks/ten_robots.py`, and the tables that the page of evidence shows of them."""
 
 from __future__ import annotations
 
@@ -58,7 +58,8 @@ def _of_figure(rows: Rows, heading: str, column: str) -> Iterator[str]:
     yield "|---|---:|---:|---:|---:|---:|---:|"
     for name, motions in rows.items():
         best = motions.get(IN_FULL, motions[PLAN])
-        cells = [_cell(row, column) for row in (best, *(motions[rival] for rival in RIVALS))]
+        shown = [best, *(motions.get(rival) for rival in RIVALS)]
+        cells = [_cell(row, column) if row else "not run" for row in shown]
         held_out = " (held out)" if best["held_out"] == "True" else ""
         yield f"| {name}{held_out} | {best['duration_s']} | {' | '.join(cells)} |"
 

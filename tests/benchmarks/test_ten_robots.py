@@ -1,11 +1,11 @@
-"""Tables of benchmarks/robots.py: the page of evidence has those of the results as they are."""
+"""Tables of benchmarks/ten_robots.py: the page of evidence has those of the results as they are."""
 
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
-RESULTS = ROOT / "benchmarks" / "results" / "robots.csv"
+RESULTS = ROOT / "benchmarks" / "results" / "ten_robots.csv"
 
 
 def test_the_page_has_the_tables_of_the_results():

@@ -2,8 +2,8 @@
 
     pip install "quietarm[robot,ruckig,toppra]" mujoco example-robot-data
     pip install --no-deps pybullet
-    python benchmarks/robots.py [--only ur5 panda] [--output robots.csv]
-    python benchmarks/robots.py --page
+    python benchmarks/ten_robots.py [--only ur5 panda] [--output robots.csv]
+    python benchmarks/ten_robots.py --page
 
 Each robot makes one move within limits of torque, speed, acceleration and jerk: by the plan, and in
 the same time by the plain cycloid, ruckig, toppra and the shaper ZVD over the cycloid. MuJoCo has
@@ -27,7 +27,7 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "tests" / "helpers"))
-RESULTS = HERE / "results" / "robots.csv"
+RESULTS = HERE / "results" / "ten_robots.csv"
 PAGE = HERE.parent / "docs" / "robots_evidence.md"
 BAR = {
     "length": 0.8, "width": 0.008, "height": 0.012, "youngs_modulus": 70e9, "density": 2700.0,
