@@ -76,7 +76,7 @@ def test_a_saved_beam_states_its_place_only_where_it_is_another():
 
 @pytest.mark.parametrize(("entries", "words"), [
     ({"direction": (0.0, 0.0, 0.0)}, r"direction of the beam is \[0.0, 0.0, 0.0\], none; give one"),
-    ({"direction": (1.0, 0.0)}, r"direction of the beam .*; give three numbers, such as \[1, 0, "),
+    ({"direction": (1.0, 0.0)}, r"direction .*; give three numbers, such as \[1, 0, 0\]"),
     ({"direction": "x"}, "direction of the beam is 'x'; give three numbers"),
     ({"direction": None}, "direction of the beam is None; give three numbers"),
     ({"offset": (0.0, float("nan"), 0.0)}, "offset of the beam is nan; give a finite number in m"),
