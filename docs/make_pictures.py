@@ -19,7 +19,6 @@ import os
 import re
 import shlex
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -316,7 +315,7 @@ def page_of_sliders(quick: bool) -> Picture:
             picture = _with_dots(page.screenshot(full_page=True), 192)
             narrow = None if quick else _first_cards(page)
     finally:
-        process.send_signal(signal.SIGINT)
+        process.terminate()
         process.communicate(timeout=240)
     shown: Shown = {"words": masked(words), "lines": [], "areas": []}
     return Picture(picture, shown, narrow)
