@@ -444,6 +444,7 @@ class Plant(_Driven, ABC):
         """The move to a target within the plant's own limits; other keywords of `PointToPoint`.
 
         A limit that is given is in the place of the plant's own of that quantity.
+        One that is given by joint is in the place of those joints' own: all others keep theirs.
         """
         import quietarm  # the name over all packages: models know of tasks what they are called
 

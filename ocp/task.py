@@ -192,6 +192,7 @@ class PointToPoint:
         """The move of a plant within limits of its own, `Plant.limits`; with other keywords.
 
         A limit that is given is in the place of the plant's own of that quantity, and None is none.
+        One that is given by joint is in the place of those joints' own: all others keep theirs.
 
         Raises
         ------
@@ -205,7 +206,8 @@ class PointToPoint:
                 raise ValueError(has_no(plant.name, "limit of", name, QUANTITIES))
             if bounds:
                 own[QUANTITIES[name].limit] = bounds
-        return cls(plant, target, duration, **{**own, **others})
+        limits = {name: _joined(own.get(name), given) for name, given in others.items()}
+        return cls(plant, target, duration, **{**own, **limits})
 
     def __init__(
         self,
@@ -609,6 +611,14 @@ def _merged(
 def _is_default(window: object) -> bool:
     """Return whether a residual window was not given, but worked out for another task, or none."""
     return window is None or isinstance(window, DefaultWindow)
+
+
+def _joined(own: Any, given: Any) -> Any:
+    """Return what was given, with a plant's own limits of joints that were not named."""
+    if not (isinstance(own, Mapping) and isinstance(given, Mapping)):
+        return given
+    joined = {**own, **given}
+    return {joint: bounds for joint, bounds in joined.items() if bounds is not None} or None
 
 
 def _check_bounds(quantity: Quantity, value: Any, plant: Plant) -> Bounds:

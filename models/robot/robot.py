@@ -177,6 +177,7 @@ class Robot(CheckedRobot):
         """The move along a path within the robot's limits; other keywords of `PointToPoint`.
 
         A limit that is given is in the place of the robot's own of that quantity.
+        One that is given by joint is in the place of those joints' own: all others keep theirs.
 
         Raises
         ------

@@ -29,10 +29,14 @@ def test_a_robot_makes_its_task_within_its_limits(robot):
 def test_a_limit_that_is_given_is_in_the_place_of_the_robots_own(robot):
     others = {"duration": 1.0, "jerk_limit": 400.0, "residual_window": 0.5}
     task = robot.task(PATH, torque_limit={"a": 90.0}, speed_limit=None, **others)
-    assert task.torque_limit == {"a": 90.0}
+    assert task.torque_limit == {"a": 90.0, "b": 150.0}  # the other joint keeps its own
     assert task.speed_limit is None
     assert task.jerk_limit == 400.0
     assert task.residual_window == 0.5
+    assert robot.task(PATH, torque_limit=90.0, **others).torque_limit == 90.0
+    without = robot.task(PATH, torque_limit={"a": None}, **others)
+    assert without.torque_limit == {"b": 150.0}
+    assert robot.task(PATH, acceleration_limit={"a": None}, **others).acceleration_limit is None
 
 
 def test_a_multiple_of_the_payload_has_the_robots_limits(robot):
