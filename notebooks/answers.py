@@ -553,7 +553,9 @@ def left_by_the_frequency_alone():
 
 EXERCISES = {
     "01": (
-        Numbers("the shortest duration with a residual below 1 mm", "s", quiet_duration),
+        Numbers(
+            "the shortest duration with a residual below 1 mm", "s", quiet_duration, tolerance=0.006
+        ),
         Numbers(
             "the energies with 2, 4, 6 and 8 terms", "J", energy_by_pairs_of_coefficients, count=4
         ),
