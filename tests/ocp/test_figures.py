@@ -304,7 +304,7 @@ def test_an_own_limit_does_not_bound_how_soon_a_joint_arrives():
 
 @pytest.mark.parametrize("kind", [Figure, Quantity])
 def test_the_example_in_a_message_is_one(kind):
-    code = kind.example.partition(", as ")[2].partition(", with unit and words of ")[0]
+    code = kind.example.partition(", such as ")[2].partition(", with unit and words of ")[0]
     made = eval(code, {**vars(dimensions), **vars(table_of_figures)})
     assert isinstance(made, kind)
     add, remove = {Figure: (add_figure, remove_figure), Quantity: (add_quantity, remove_quantity)}[

@@ -97,7 +97,7 @@ def test_a_huge_grid_that_is_ended_says_so_and_leaves_no_temporary_folder(folder
 
 def test_a_reader_that_has_read_enough_is_no_error():
     ran = run("list plants", "| head -1")
-    assert ran.stdout.startswith("plants")
+    assert ran.stdout.startswith("6 plants; ")
     assert ran.stderr == ""
 
 
