@@ -398,6 +398,8 @@ class Evidence:
     @cached_property
     def step(self) -> float:
         """Share of the correction that is worth making: 0 where what is left may be noise."""
+        if self.is_as_allowed:
+            return 0.0
         left = np.abs(self._again)
         unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, self._told[-1])])
         unseen = self.beyond if self.by_joint else 0.0
@@ -406,13 +408,50 @@ class Evidence:
         power = float((left**2).sum())
         return power / (power + 2 * float((unsure**2).sum()))
 
+    @cached_property
+    def allowed(self) -> float:
+        """Swing that the last plan may leave by its residual limit, as this machine shows it [m].
+
+        0 where the plan arrives at rest.
+        """
+        limit = self._plan.residual_limit or 0.0
+        if limit == 0.0:
+            return 0.0
+        task = self._plan.task
+        (missed,) = task.missed(self._plan.candidate.arrival[:1])
+        leaves = self._reach(TipModes(task.plant, task.target).amplitudes(missed))
+        return max(limit, leaves) * max(1.0, *(abs(m.share) for m in self.maps))
+
+    @cached_property
+    def is_as_allowed(self) -> bool:
+        """Return whether the last move left what its plan allows, so that another leaves as much.
+
+        Either all of it is within that, or what the plan missed of its arrival state explains all
+        but noise.
+        """
+        if self.allowed == 0.0:
+            return False
+        stays = self.floor + (self.beyond if self.by_joint else 0.0)
+        if self._reach(self._again) <= self.allowed + stays:
+            return True
+        aimed = self.modes.amplitudes(self._plan.task.final_state)
+        missed = [m.swing(t) - w for m, t, w in zip(self.maps, aimed, self._wanted)]
+        return not self.changed and self._reach(np.array(missed)) <= stays
+
+    def _reach(self, amplitudes: ComplexArray) -> float:
+        """Return how far the tip gets from where it rests by swings of all modes [m]."""
+        return float(np.abs(amplitudes).sum())
+
     def told_next(self, step: float) -> ComplexArray:
         """Return what the plant is to say of the next set points, by mode."""
         aim = self._wanted + (1 - step) * self._again
         return np.array([m.told_for(swing) for m, swing in zip(self.maps, aim)])
 
     def at_most(self, told: ComplexArray) -> float:
-        """Return the most that the next move leaves, in 95 of 100 cases."""
+        """Return the most that the next move leaves, in 95 of 100 cases.
+
+        By what the plant says of its set points: what the plan itself leaves is in it.
+        """
         many = 2.0  # deviations
         aimed = np.abs([m.swing(t) - w for m, t, w in zip(self.maps, told, self._wanted)])
         unsure = np.array([m.deviation_of(t) for m, t in zip(self.maps, told)])

@@ -106,7 +106,7 @@ def learn(
                 f"correction {_change(before, again.energy)} of that, which alone --dearer limits"
             )
         again = again.with_entries(learned=history)
-        told = evidence.modes.amplitudes(again.task.final_state)
+        told = evidence.modes.amplitudes(again.candidate.arrival[0])  # with what the plan misses
         if share < 1:
             step *= share
             notes.append(
@@ -129,6 +129,7 @@ def learn(
         machine=evidence.machine(),
         by_joint=evidence.by_joint,
         notes=(*notes, *evidence.doubts),
+        allowed=evidence.allowed if evidence.is_as_allowed else 0.0,
         modes=evidence.frequencies,
         inertias=inertias,
     )

@@ -48,6 +48,9 @@ class Learning:
         Whether no tip was recorded, so that all follows from the joint and its torque.
     modes : mapping of str to (float, float)
         Of a robot: the frequency of every mode that moves told [Hz], the plan's and the robot's.
+    allowed : float
+        What the plan may leave by its residual limit, as this machine shows it, where the move left
+        no more; else 0.
     inertias : tuple of Estimate
         Where the joint and its torque were recorded: how many times as heavy as the plan's what
         swings is, its payload, and all that moves. The plan and the machine keep theirs.
@@ -69,10 +72,11 @@ class Learning:
     notes: tuple[str, ...] = field(default=())
     modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     inertias: tuple[Estimate, ...] = field(default=())
+    allowed: float = 0.0
 
     @property
     def is_done(self) -> bool:
-        """Return whether there is nothing more to learn: what is left is noise."""
+        """Return whether there is nothing more to learn: what is left is noise, or allowed."""
         return self.step == 0.0
 
     def machine_from(self, known: Identified) -> Identified:

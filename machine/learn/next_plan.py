@@ -75,11 +75,14 @@ def _from(plan: Plan, task: PointToPoint, solver: Solver) -> Plan:
     """The plan of a task from another plan's coefficients."""
     request = Request(
         task, plan.profile, solver, plan.record.bound, starts=1, steps=plan.steps, quick=True
-    ).stating(plan.residual_limit or None)
+    )
+    # the arrival state makes up for what the machine leaves: it may vibrate beyond the task's band
+    limit = plan.residual_limit or task.band_limit
+    request = request.within(limit) if limit else request.stating(None)
     try:
         return plan_along(request.from_guess(plan.coefficients))
     except SolverFailedError as error:
         raise SolverFailedError(
             f"no motion within the limits makes up for what was left ({error}); learn from a plan "
-            "with a duration that is a little longer, or wider limits"
+            "with a duration that is a per cent longer, or wider limits"
         ) from None

@@ -29,7 +29,11 @@ def set_sentence(learned: LearnedSet, plant: Plant) -> str:
         return f"{words}; one move does not tell how well others are predicted: record another"
     median = with_unit(float(np.median(learned.left_out)), plant)
     most = with_unit(max(learned.left_out), plant)
-    return f"{words}; cells without a recording: {median}, at most {most} (each move left out once)"
+    words += f"; cells without a recording: {median}, at most {most} (each move left out once)"
+    limit = learned.definition.settings.residual_limit
+    if limit == 0.0:
+        return words
+    return f"{words}, beside the {with_unit(limit, plant)} that each plan itself may leave"
 
 
 def set_rows(learned: LearnedSet, plant: Plant) -> list[Row]:

@@ -32,6 +32,16 @@ def acting_words(motion: JudgedMotion) -> str:
     )
 
 
+def arrival_words(motion: JudgedMotion) -> str:
+    """Say that a learned motion may act from its arrival on: "may act after 0.9 s: within 0.1 mm".
+
+    For a move that leaves less than its task's band on the machine that it was learned from.
+    """
+    assert motion.task.band is not None
+    band = tip_words(motion.task.band, "m")
+    return f"may act after {motion.task.duration:.3g} s: within {band} on this machine"
+
+
 def ranges_words(ranges: Mapping[str, float]) -> str:
     """Say for which errors something holds: "for frequency errors up to 5 %"."""
     if not ranges:

@@ -8,7 +8,9 @@ from quietarm.machine.identify.identified import is_frequency
 from quietarm.machine.learn import Learning
 from quietarm.models import Plant
 from quietarm.ocp import Plan
+from quietarm.views.report.acting_words import acting_words, arrival_words
 from quietarm.views.report.words import counted
+from quietarm.views.tips import tip_words
 
 Row = tuple[str, str]
 
@@ -19,6 +21,13 @@ def learning_sentence(learned: Learning) -> str:
     left = with_unit(learned.left, plant)
     floor = with_unit(learned.floor, plant)
     whose = _of_floor(learned)
+    if learned.is_done and learned.allowed > 0 and learned.left > learned.floor:
+        beside = f" beside a floor {whose} of {floor}" if learned.left > learned.allowed else ""
+        return (
+            f"Nothing more to learn: the move leaves what the plan allows "
+            f"({with_unit(learned.allowed, plant)}){beside}: {left}; the next move is this one. "
+            "For less, plan with a smaller --residual-limit."
+        )
     if learned.is_done and learned.left <= learned.floor:
         return (
             f"Nothing more to learn: the move left {left}, within the floor {whose}, {floor}; the "
@@ -31,6 +40,23 @@ def learning_sentence(learned: Learning) -> str:
         )
     least = with_unit(learned.next_at_most, plant)
     return f"The move left {left}; the next move leaves at most {least}."
+
+
+def _acting(learned: Learning) -> list[Row]:
+    """Say when the tool may act, by what the next move leaves; nothing without a band."""
+    task = learned.plan.task
+    if task.band is None:
+        return []
+    least = with_unit(learned.next_at_most, task.plant)
+    band = tip_words(task.band, "m")
+    if learned.next_at_most > task.band:
+        return [("tool", f"not sure to stay within {band}: the next move may leave {least}")]
+    history = learned.plan.learned
+    wanted = None if history is None else history.wanted
+    motion = learned.plan.candidate
+    # a state on arrival that makes up for the machine is what the model does, and not the machine
+    words = acting_words(motion) if task.final == wanted else arrival_words(motion)
+    return [("tool", words)]
 
 
 def _of_floor(learned: Learning) -> str:
@@ -64,6 +90,7 @@ def learning_rows(plan: Plan, learned: Learning) -> list[Row]:
     moves = learned.plan.learned.moves if learned.plan.learned else ()
     recordings = sum(len(move.measured) for move in moves)
     rows = [
+        *_acting(learned),
         *_shares(learned),
         ("learned from", f"{counted(len(moves), 'move')}, {counted(recordings, 'recording')}"),
         *(

@@ -327,6 +327,8 @@ class RobotEvidence(Evidence):
     @cached_property
     def step(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Share of the correction that is worth making, by the modes whose swing is seen."""
+        if self.is_as_allowed:
+            return 0.0
         left = np.abs(self._again)
         single = self._of_one[-1]
         if self._scatter is not None:

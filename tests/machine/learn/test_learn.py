@@ -291,6 +291,52 @@ def test_there_is_nothing_more_to_learn_from_noise():
     assert len(again.plan.learned.moves[0].measured) == 2
 
 
+def test_what_a_plan_allows_is_nothing_to_learn_from():
+    plan = qa.plan_move(TASK, qa.CycloidPolynomial(4), residual_limit=2e-4, starts=1)
+    learned = qa.learn(plan, [recording(plan, "tip", "angle")])
+    assert learned.floor < 1e-4 < learned.left < learned.allowed  # as far as it may, times 1.2
+    assert learned.is_done
+    assert learned.plan.coefficients == plan.coefficients
+    assert left_by(plan) < learned.next_at_most
+    assert "the move leaves what the plan allows (0.24 mm): 0.2" in learning_sentence(learned)
+
+
+@cache
+def a_band_plan():
+    """A plan whose tip stays within 0.2 mm, for frequency errors of 5 % as well."""
+    return qa.plan_move(replace(TASK, band=2e-4), qa.CycloidPolynomial(6), starts=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("frequency", [5.0, 5.1, 5.4])
+@pytest.mark.parametrize("offset", [0.0, 3e-4])
+def test_what_a_plan_of_a_band_itself_leaves_is_in_the_promise(frequency, offset):
+    plan, machine = a_band_plan(), {"frequency": frequency, "offset": offset}
+    for number in range(3):
+        run = recording(plan, "tip", "angle", seed=number, noise=2e-6, **machine)
+        learned = qa.learn(plan, [run])
+        assert left_by(learned.plan, **machine) < learned.next_at_most
+        plan = learned.plan
+        if learned.is_done:
+            break
+    assert learned.is_done  # it is not planned again for ever
+    assert number < 2
+    assert left_by(plan, **machine) < 1.05 * learned.allowed
+    assert "what the plan allows (0.08" in learning_sentence(learned)
+    row = dict(learning_rows(plan, learned))["tool"]
+    assert row.startswith("may act after 0.")
+    assert ("on this machine" in row) == (plan.task.final is not None)
+
+
+@pytest.mark.slow
+def test_a_next_move_that_may_leave_the_band_is_said_to():
+    plan = a_band_plan()
+    learned = qa.learn(plan, [recording(plan, "tip", "angle", frequency=5.4, offset=2e-3)])
+    assert learned.next_at_most > 2e-4
+    words = dict(learning_rows(plan, learned))["tool"]
+    assert words.startswith("not sure to stay within 0.2 mm: the next move may leave 0.")
+
+
 @pytest.mark.slow
 def test_moves_that_differ_are_averaged_and_said_not_to_repeat():
     plan = a_plan()

@@ -15,12 +15,17 @@ STEP = 0.002
 @pytest.fixture
 def plan(folder):
     """A plan of two joints, and a log of it on springs that are 1.2 times as stiff."""
+    return logged(folder, stiffness=1.2)
+
+
+def logged(folder, *, stiffness, **limits):
+    """Save a plan and a log of it on other springs; return the motion there."""
     robot = qa.Robot.load(write_robot(folder, ARM, ARM_FILE))
     plant = robot.along(qa.GeometricPath.through([[0.0, 0.5], [1.0, 1.0]]))
     task = qa.PointToPoint(plant, target=1.0, duration=0.5)
-    planned = qa.plan_move(task, qa.CycloidPolynomial(6), starts=1)
+    planned = qa.plan_move(task, qa.CycloidPolynomial(6), starts=1, **limits)
     planned.save(folder / "plan.json")
-    actual = qa.PointToPoint(replace(plant, stiffness=1.2), target=1.0, duration=0.5)
+    actual = qa.PointToPoint(replace(plant, stiffness=stiffness), target=1.0, duration=0.5)
     moved = qa.evaluate_coefficients(actual, planned.coefficients, profile=planned.profile)
     sample = moved.sampled(np.arange(0, 2, STEP)).sample
     joints = [joint.angle for joint in sample.joints]
@@ -48,3 +53,22 @@ def test_the_springs_are_learned_from_a_log(done, refused, plan, folder):
     )
     assert "what to write into the robot's file" in refused(f"{line} --machine m.json")
     assert "no 2 columns of 'tau'" in refused("learn plan.json log.csv --torque tau")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("stiffness", "limit"), [(1.0, 8e-3), (1.2, 2e-3)])
+def test_what_a_robots_plan_itself_leaves_is_in_the_promise(done, folder, stiffness, limit):
+    moved = logged(folder, stiffness=stiffness, residual_limit=limit)
+    line = "learn plan.json log.csv --torque tau_ext --scale torque=-1 --angle q --dearer 10%"
+    out = " ".join(done(f"{line} --output next.json").split())
+    if stiffness == 1:
+        assert moved.residual == pytest.approx(limit, rel=1e-3)  # as far as it may
+        assert out.startswith("Nothing more to learn: the move leaves what the plan allows (8")
+    else:
+        following = qa.Plan.load(folder / "next.json")
+        task = replace(moved.task, plant=replace(moved.task.plant, stiffness=1.2))
+        after = qa.evaluate_coefficients(
+            task, following.coefficients, profile=following.profile
+        ).residual
+        promised = float(re.search(r"the next move leaves at most ([\d.]+) mm", out)[1])
+        assert 1e-3 < after < 1e-3 * promised
