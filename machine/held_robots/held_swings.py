@@ -117,6 +117,19 @@ def _check(robot: Robot, recording: RobotRecording, posture: Sequence[float] | N
 
 
 def _posture(
+    robot: Robot,
+    recording: RobotRecording,
+    posture: Sequence[float] | None,
+    begin: float,
+    end: float,
+) -> Array:
+    """The positions of the joints in a part of a recording, none of them in degrees."""
+    q = _posture_at(recording, posture, begin, end)
+    robot.check_posture(f"the posture of {recording.name}", q.tolist())
+    return q
+
+
+def _posture_at(
     recording: RobotRecording, posture: Sequence[float] | None, begin: float, end: float
 ) -> Array:
     if posture is not None:
@@ -131,7 +144,7 @@ def _spans(
 ) -> list[tuple[float, float]]:
     """Begins and ends of the free decays that are long enough [s]."""
     last = float(recording.time[-1])
-    q = _posture(recording, posture, last - 0.2 * float(np.ptp(recording.time)), last)
+    q = _posture(robot, recording, posture, last - 0.2 * float(np.ptp(recording.time)), last)
     slowest = float(robot.frequencies(q)[0]) / (2 * np.pi)
     way = None
     if recording.positions is not None:
@@ -162,7 +175,7 @@ def _read(
     part = recording.part(begin, end)
     if len(part.time) < 2:
         raise ValueError(f"{recording.name} has no rows from {begin:g} to {end:g} s; give others")
-    q = _posture(recording, posture, begin, end)
+    q = _posture(robot, recording, posture, begin, end)
     found, modes = min(
         (_swing(robot, part, q, axes) for axes in _axes_of(part)),
         key=lambda one: one[0].unexplained,

@@ -8,8 +8,9 @@ from math import tau
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from quietarm.machine.held_robots.held_load import load_at_rest
+from quietarm.machine.held_robots.held_load import load_at_rest, unfit_share
 from quietarm.machine.held_robots.held_swings import HeldSwing, RingDown, read_ring_downs
 from quietarm.machine.identify.combine import Group, estimate
 from quietarm.machine.identify.identified import Estimate
@@ -17,6 +18,7 @@ from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models.robot import Measured, Robot
 from quietarm.ocp.checks import instance, several, takes
 
+Array = NDArray[np.float64]
 _SAME_POSTURE = 0.01
 """Positions of one posture differ by less [rad or m]: encoders and controllers flicker."""
 _LEAST_WITHIN = 1e-3
@@ -71,6 +73,9 @@ class IdentifiedRobot:
         By what it is told, or why it is not.
     notes : tuple of str
         How ring-downs were read.
+    unfit : float
+        By what share the torques at rest are others than hold the robot at these postures,
+        whatever its load; 0 where they fit, or tell nothing of the posture.
     """
 
     robot: Robot
@@ -80,6 +85,7 @@ class IdentifiedRobot:
     payload: Estimate | None
     payload_by: str
     notes: tuple[str, ...]
+    unfit: float = 0.0
 
 
 @takes(robot=Robot)
@@ -190,6 +196,7 @@ def _identified(
             unsure = float(np.hypot(unsure, heavy.fit.stiffness / factor - 1))
     fit = robot.fit
     assert fit is not None
+    held = _held(ring_downs)
     return IdentifiedRobot(
         robot=robot,
         modes=tuple(replace(one, misfit=misfit) for one, misfit in zip(told, fit.misfits)),
@@ -198,6 +205,7 @@ def _identified(
         payload=payload,
         payload_by=why,
         notes=tuple(dict.fromkeys(notes)),
+        unfit=unfit_share(robot, held) if held else 0.0,
     )
 
 
@@ -213,7 +221,7 @@ def _by_torques(robot: Robot, ring_downs: Sequence[RingDown]) -> tuple[Estimate 
         return None, (
             "the robot's file has no load: give the beam a tip_mass, as 0.1kg, for it to be sought"
         )
-    held = [(one.posture, one.torques) for one in ring_downs if one.torques is not None]
+    held = _held(ring_downs)
     if not held:
         return None, (
             "these frequencies do not tell it from the springs; record the torques of the joints, "
@@ -224,6 +232,11 @@ def _by_torques(robot: Robot, ring_downs: Sequence[RingDown]) -> tuple[Estimate 
         why = why or "the torques at rest tell it no better than within its own size"
         return None, f"these frequencies do not tell it from the springs, and {why}"
     return _estimate("payload", mass, 2 * deviation), BY_TORQUES
+
+
+def _held(ring_downs: Sequence[RingDown]) -> list[tuple[tuple[float, ...], Array]]:
+    """Postures, and the torques at rest there where they were recorded."""
+    return [(one.posture, one.torques) for one in ring_downs if one.torques is not None]
 
 
 def _estimate(name: str, value: float, half: float) -> Estimate:

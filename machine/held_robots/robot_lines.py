@@ -43,7 +43,10 @@ def write_robot(found: IdentifiedRobot, original: Path, path: Path) -> None:
         entries["beam"] = {**entries["beam"], "tip_mass": mass}
     lines = [f"{_scalar(name)}: {_flow(value)}" for name, value in entries.items()]
     lines += measured_lines(found.robot.measurements)
-    write_whole(path, "\n".join(["# identified by quietarm from ring-downs", *lines, ""]))
+    head = ["# identified by quietarm from ring-downs"]
+    if found.unfit:
+        head.append("# the torques at rest do not fit the posture: springs and at are in doubt")
+    write_whole(path, "\n".join([*head, *lines, ""]))
 
 
 def _beside(file: Path, folder: Path) -> str:

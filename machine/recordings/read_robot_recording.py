@@ -17,7 +17,7 @@ from quietarm.machine.recordings.read_recording import Columns, tick_of
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.machine.tables.column_units import split_name
 from quietarm.machine.tables.table import Table, read_table, unused_in_words
-from quietarm.models.number_checks import quoted
+from quietarm.models.number_checks import listed, quoted
 from quietarm.models.robot.text_files import read_text
 from quietarm.ocp import FileFormatError
 
@@ -63,6 +63,10 @@ def read_robot_recording(
         if found:
             headings[signal] = found
     if not headings.keys() & {"torques", "acceleration", "tip"}:
+        if almost := _almost(table, "torques", columns.names.get("torque") or (), joints):
+            raise FileFormatError(
+                f"{path} has {almost}; rename it, or name what all torques begin with by --torque"
+            )
         raise FileFormatError(
             f"{path} has no column of torques by the joints' names, such as "
             f"{joints[0]}_effort; name what they begin with by --torque, as tau_ext of "
@@ -87,8 +91,11 @@ def read_robot_recording(
         time = table.find(heading).values * _factor(table, heading, "time", columns)
         tick = tick_of(table, {"time": [heading]}, columns)
     recording = _recording(time, signals, name, tick)
-    note = unused_in_words(table.unused(used))
-    return ReadRobotRecording(recording, [note] if note else [])
+    notes = [unused_in_words(table.unused(used))]
+    if "positions" not in headings:
+        almost = _almost(table, "positions", columns.names.get("angle") or (), joints)
+        notes.append(f"{name} has {almost}: no positions are used" if almost else "")
+    return ReadRobotRecording(recording, [note for note in notes if note])
 
 
 def _recording(
@@ -118,13 +125,14 @@ def _headings(table: Table, signal: str, given: Sequence[str], joints: Sequence[
 
     FileFormatError where a name was given and does not stand for all of them.
     """
-    names = {_plain(column.name): column.name for column in table.columns}
-    names |= {column.name.strip().lower(): column.name for column in table.columns}
+    names = _by_name(table)
     for front in given or _CALLED[signal]:
         for pattern in _patterns(front, joints):
             found = [names[one.lower()] for one in pattern if one.lower() in names]
             if len(found) == len(joints):
                 return found
+    if given and (almost := _almost(table, signal, given, joints)):
+        raise FileFormatError(f"{table.path} has {almost}; rename it")
     if given:
         raise FileFormatError(
             f"{table.path} has no {len(joints)} columns of {quoted(given[0])}, one for each joint; "
@@ -133,6 +141,43 @@ def _headings(table: Table, signal: str, given: Sequence[str], joints: Sequence[
         )
     alone = [names[joint.lower()] for joint in joints if joint.lower() in names]
     return alone if signal == "torques" and len(alone) == len(joints) else []
+
+
+def _almost(table: Table, signal: str, given: Sequence[str], joints: Sequence[str]) -> str:
+    """Say which joints lack a column where others have one, and which columns are left over.
+
+    Nothing where more than half of the joints lack one.
+    """
+    names = _by_name(table)
+    patterns = [
+        (front, pattern)
+        for front in given or _CALLED[signal]
+        for pattern in _patterns(front, joints)
+    ]
+    if signal == "torques":
+        patterns.append(("", [*joints]))
+    front, best = max(patterns, key=lambda one: sum(name.lower() in names for name in one[1]))
+    missing = [name for name in best if name.lower() not in names]
+    count = len(joints) - len(missing)
+    if not count or not missing or count < len(missing):
+        return ""
+    taken = {name.lower() for name in best}
+    others = [
+        column.name
+        for column in table.columns
+        if front and front.lower() in _plain(column.name) and _plain(column.name) not in taken
+    ]
+    left = f"; left over of the file: {listed(others)}" if others else ""
+    return (
+        f"{signal} of {count} of {len(joints)} joints, and no column "
+        f"{listed(map(quoted, missing))}{left}"
+    )
+
+
+def _by_name(table: Table) -> dict[str, str]:
+    """The headings by their names in small letters, with and without units."""
+    names = {_plain(column.name): column.name for column in table.columns}
+    return names | {column.name.strip().lower(): column.name for column in table.columns}
 
 
 def _patterns(front: str, joints: Sequence[str]) -> Iterator[list[str]]:
@@ -157,10 +202,13 @@ def _of_messages(
     stamps = list[float]()
     rows: dict[str, list[list[float]]] = {signal: [] for signal in _FIELDS}
     passed = 0
+    seen = list[str]()
     for message in _messages_in(path):
         names = message.get("name")
         if not isinstance(names, list) or not set(joints) <= set(map(str, names)):
             passed += 1
+            if isinstance(names, list) and set(joints) & set(map(str, names)):
+                seen = [str(one) for one in names]
             continue
         order = [names.index(joint) for joint in joints]
         for signal, field in _FIELDS.items():
@@ -168,6 +216,14 @@ def _of_messages(
             if isinstance(values, list) and len(values) == len(names):
                 rows[signal].append([_number(path, field, values[k]) for k in order])
         stamps.append(_stamp(path, message))
+    if not stamps and seen:
+        missing = [quoted(joint) for joint in joints if joint not in seen]
+        others = [quoted(one) for one in seen if one not in joints]
+        left = f"; left over of the message: {listed(others)}" if others else ""
+        raise FileFormatError(
+            f"{path} has messages without the joint {listed(missing)}{left}; record those of this "
+            "robot, by ros2 topic echo --full-length /joint_states"
+        )
     if not stamps:
         raise FileFormatError(
             f"{path} has no JointState message of {', '.join(joints)}; record those of this robot, "

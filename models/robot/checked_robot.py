@@ -12,6 +12,7 @@ import numpy as np
 
 from quietarm.interrupts import interruptible
 from quietarm.models import dimensions
+from quietarm.models.joint_motion import ROTARY
 from quietarm.models.number_checks import (
     finite,
     has_no,
@@ -40,6 +41,10 @@ _MOST_MOVING = 100
 """Joints, whose equations are written in two seconds."""
 _SAME = 1e-3
 """Positions of one posture differ by less [rad or m]."""
+_MOST_TURNS = 4
+"""Of a joint without ends, beyond which its position is in degrees, most likely."""
+_TIMES_ITS_END = 10.0
+"""So far beyond its range is a joint that slides in millimetres, most likely."""
 _USUAL_MODES = 2
 """That are followed where the file does not say how many."""
 
@@ -57,6 +62,8 @@ class CheckedRobot(MovingRobot):
         self._set("elastic_joints", self._springs("elastic_joints", self.elastic_joints))
         self._set("held", self._numbers("held", self.held, finite))
         self._set("joints", self._driven())
+        for name, position in self.held.items():
+            self._check_unit("held", name, position)
         self._check_names()
         self._set("rotor_inertia", self._numbers("rotor_inertia", self.rotor_inertia, not_negative))
         self._set("friction", self._rubbing("friction", "damping"))
@@ -89,6 +96,41 @@ class CheckedRobot(MovingRobot):
 
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
+
+    def check_posture(self, what: str, posture: Sequence[float]) -> None:
+        """Refuse a posture of the driven joints of which one is in degrees, or in millimetres.
+
+        A little beyond the range of a joint is none of these: encoders are not those of the URDF.
+        """
+        for name, position in zip(self.joints, posture):
+            self._check_unit(what, name, float(position))
+
+    def _check_unit(self, what: str, joint: str, position: float) -> None:
+        """Refuse a position beyond the URDF's range of a joint that is in another unit."""
+        entry = self.description.joints[joint]
+        words = self.unit_words(joint, position)
+        if not words or (entry.lower <= position <= entry.upper and not entry.endless):
+            return
+        if entry.endless and abs(position) <= _MOST_TURNS * math.tau:
+            return
+        ends = f"its range is {entry.lower:g} to {entry.upper:g}"
+        if entry.endless:
+            ends = f"that is over {_MOST_TURNS} turns"
+        unit = "deg" if self.kind_of(joint) == ROTARY else "mm"
+        raise ValueError(
+            f"{what} has joint {quoted(joint)} at {position:.5g}; {ends}{words} give "
+            f"{position:.5g}{unit}"
+        )
+
+    def unit_words(self, joint: str, position: float) -> str:
+        """Ask whether degrees were meant beyond a turn, or millimetres far beyond a range."""
+        if self.kind_of(joint) == ROTARY:
+            is_far = abs(position) > math.tau
+            return "; positions are in rad, were degrees meant?" if is_far else ""
+        entry = self.description.joints[joint]
+        farthest = max(abs(entry.lower), abs(entry.upper))
+        is_far = abs(position) > _TIMES_ITS_END * farthest
+        return "; positions are in m, were millimetres meant?" if is_far else ""
 
     def _springs(self, entry: str, springs: Mapping[str, Any]) -> dict[str, Spring]:
         found = dict[str, Spring]()
@@ -259,6 +301,7 @@ class CheckedRobot(MovingRobot):
                 f"{what} has {len(at)} positions and the robot {len(self.joints)} joints; give "
                 "one of each"
             )
+        self.check_posture(what, at)
         count = len(self.unscaled.sprung)
         mode = whole(f"mode of {what}", one.mode, 1, max(count, 1))
         damping = one.damping

@@ -56,7 +56,7 @@ from quietarm.models.robot.on_path.tip_way import way_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
 from quietarm.models.robot.path.straight_line import tip_beside_lines
 from quietarm.models.robot.robot_file import read_robot
-from quietarm.models.robot.robot_notes import notes_of
+from quietarm.models.robot.robot_notes import notes_of, notes_of_fit
 from quietarm.models.robot.urdf.following import (
     Following,
     ranges_of_leaders,
@@ -198,7 +198,7 @@ class Robot(CheckedRobot):
     @cached_property
     def notes(self) -> tuple[Note, ...]:
         """Notes on the robot, one line each, about gaps, errors and unused entries of its files."""
-        return (*self.remarks, *notes_of(self))
+        return (*self.remarks, *notes_of(self), *notes_of_fit(self.fit))
 
     @cached_property
     def finer(self) -> Robot:
@@ -251,7 +251,7 @@ class Robot(CheckedRobot):
                 raise ValueError(
                     f"joint {quoted(name)} is at {column[at]:.5g} at s = {places[at]:.3g} of the "
                     f"path; its range is {least:g} to {most:g}{self._with_followers(name)}, give a "
-                    f"path within it{self._degrees_words(name, column[at])}"
+                    f"path within it{self.unit_words(name, column[at])}"
                 )
         words = tuple(words for words in self._long_turns(path) if words not in path.remarks)
         return replace(path, remarks=(*path.remarks, *words)) if words else path
@@ -269,7 +269,7 @@ class Robot(CheckedRobot):
                     f"joint {quoted(name)}, which has no ends, turns by {steps[at]:.4g} rad "
                     f"between waypoints {at + 1} and {at + 2}; for the short way of {short:.4g} "
                     f"rad give {column[at] + short:.5g} in place of {column[at + 1]:.5g}"
-                    f"{self._degrees_words(name, steps[at])}"
+                    f"{self.unit_words(name, steps[at])}"
                 )
 
     def check_positions(self, points: Array) -> None:
@@ -282,7 +282,7 @@ class Robot(CheckedRobot):
                     f"joint {quoted(name)} is at {column[at]:.5g} at point {at + 1} of "
                     f"{len(points)}; its range is {least:g} to {most:g}"
                     f"{self._with_followers(name)}, give positions within it"
-                    f"{self._degrees_words(name, column[at])}"
+                    f"{self.unit_words(name, column[at])}"
                 )
 
     @interruptible
@@ -292,11 +292,6 @@ class Robot(CheckedRobot):
         These are the lines between the path's waypoints; 0 of a path without.
         """
         return tip_beside_lines(self.kinematics(self.tip), *path.beside_lines)
-
-    def _degrees_words(self, joint: str, position: float) -> str:
-        """Ask whether degrees were meant where a joint turns by more than a turn."""
-        is_far = self.kind_of(joint) == ROTARY and abs(position) > math.tau
-        return "; positions are in rad, were degrees meant?" if is_far else ""
 
     def _with_followers(self, joint: str) -> str:
         """Words on the joints that follow one, whose ranges bind it as well."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from quietarm.models.notes import Note
 from quietarm.models.number_checks import quoted
+from quietarm.models.robot.dynamics.measured_fit import MeasuredFit
 from quietarm.models.robot.dynamics.robot_parts import RobotParts
 from quietarm.models.robot.urdf.following import (
     held_position,
@@ -19,6 +20,10 @@ from quietarm.models.robot.urdf.urdf_text import passed_over
 
 _MOST_NAMES = 5
 """Of links or joints that a note names."""
+_MOST_DAMPING = 0.1
+"""A ratio beyond which it is in per cent, most likely: a bar of metal has less than 0.01."""
+_STIFFEST = 2.0
+"""So many times stiffer, or softer, may springs be than in a file without a word."""
 
 
 def notes_of(robot: RobotParts) -> tuple[Note, ...]:
@@ -33,6 +38,19 @@ def notes_of(robot: RobotParts) -> tuple[Note, ...]:
         *_without_leader(robot.description),
         *_without_ranges(robot),
         *_decelerations(robot),
+        *_much_damping(robot),
+    )
+
+
+def notes_of_fit(fit: MeasuredFit | None) -> tuple[Note, ...]:
+    """Return the note on springs that measured frequencies make far stiffer, or far softer."""
+    if fit is None or 1 / _STIFFEST <= fit.stiffness <= _STIFFEST:
+        return ()
+    return (
+        Note(
+            f"what was measured makes the springs {fit.stiffness:.4g} times as stiff as in the "
+            "robot's file; check the frequency, its mode and its posture, or the springs"
+        ),
     )
 
 
@@ -167,3 +185,17 @@ def _decelerations(robot: RobotParts) -> Iterator[Note]:
             "the URDF's limits of deceleration are smaller, and are kept while joints speed up as "
             f"well: {first_of(taken)}"
         )
+
+
+def _much_damping(robot: RobotParts) -> Iterator[Note]:
+    """Damping ratios that are in per cent, most likely."""
+    ratios = {} if robot.beam is None else {"damping of the beam": robot.beam.damping}
+    for number, one in enumerate(robot.measurements, 1):
+        which = "measured" if len(robot.measurements) == 1 else f"{number} of measured"
+        ratios[f"damping of {which}"] = one.damping or 0.0
+    for what, ratio in ratios.items():
+        if ratio > _MOST_DAMPING:
+            yield Note(
+                f"{what} is {100 * ratio:.4g} %, which is much; was {ratio:.4g} % meant? give "
+                f"{ratio:.4g}%"
+            )

@@ -97,7 +97,10 @@ class TimedAnswer:
 
     @cached_property
     def diagnosis(self) -> str:
-        """Words on what is left after arrival, by which mode and why, and what a plan leaves."""
+        """Words on what is left after arrival, by which mode and why, and what a plan leaves.
+
+        Where a plan leaves no less, or less by what nobody sees, it says that alone.
+        """
         first, *others = sorted(self.swings, key=lambda swing: -swing[1])
         number = 1 + list(self.swings).index(first)
         words = (
@@ -107,16 +110,32 @@ class TimedAnswer:
         if others and others[0][1] > _SEEN * first[1]:
             words += f" and {_mm(others[0][1])} by that at {others[0][0] / math.tau:.3g} Hz"
         try:
+            if self._is_as_still_as_a_plan:
+                return f"leaves {_mm(self.residual)}: as still as a plan; nothing to improve"
             return f"{words}; {self._cause(first[0])}; {self._remedy()}"
         except (ValueError, QuietarmError) as error:
             return f"{words}; its path cannot be planned along: {error}"
+
+    @property
+    def _is_as_still_as_a_plan(self) -> bool:
+        """Whether a plan would leave as much, or less by what nobody sees."""
+        if self.residual <= _AS_STILL:
+            return True
+        left = self._left_by_plan
+        return isinstance(left, float) and self.residual <= left + _AS_STILL
+
+    @cached_property
+    def _left_by_plan(self) -> float | QuietarmError:
+        """What a plan leaves [m], or why there is none."""
+        try:
+            return _left_by(self.plan)
+        except QuietarmError as error:
+            return error
 
     def _cause(self, frequency: float) -> str:
         """Say whether steps of the acceleration or the pace of the move make it ring."""
         left = _left_by(self.cycloid)
         swings = self.motion.duration * frequency / math.tau
-        if self.residual <= _STILL:
-            return "that is still"
         if left > _SHARE * self.residual:
             return (
                 f"a resonance: the plain cycloid, as smooth as can be, leaves {_mm(left)} along "
@@ -135,10 +154,9 @@ class TimedAnswer:
 
     def _remedy(self) -> str:
         """Say what a plan leaves."""
-        try:
-            left = _left_by(self.plan)
-        except QuietarmError as error:
-            return f"within the robot's limits no plan was found in the same time: {error}"
+        left = self._left_by_plan
+        if isinstance(left, QuietarmError):
+            return f"within the robot's limits no plan was found in the same time: {left}"
         return f"with the same path and time a plan leaves {_mm(left)}"
 
 
@@ -156,8 +174,8 @@ _SHARE = 1 / 3
 """Of what is left, from which on it is no matter of jerk that the plain cycloid leaves as much."""
 _OF_PEAK = 0.05
 """Share of the largest acceleration that is a step and not rounding."""
-_STILL = 2e-5
-"""What nobody sees [m]."""
+_AS_STILL = 5e-5
+"""What nobody sees [m]: a plan that leaves less by no more is no better."""
 
 
 @takes(energy=Energy)

@@ -60,7 +60,7 @@ def read_recordings(given: Given, paths: Sequence[Path], plant: Plant) -> list[R
     if given.rate and given.time:
         raise click.UsageError("--rate is for files without a column of the time; leave --time out")
     units = given.units or {}
-    scales = once(chain.from_iterable(given.scales), "--scale ")
+    scales = scales_typed(given)
     _refuse_idle(names, {"--units": units, "--scale": scales}, plant.joint, given.rate is not None)
     columns = Columns(names, units, scales, given.rate, plant.joint)
     return [read_recording(path, columns, name) for path, name in _named(paths)]
@@ -89,9 +89,14 @@ def read_robot_recordings(
         quantity: [column] if isinstance(column, str) else list(column or ())
         for quantity, column in given.pick("time", "angle", "tip", "acceleration", "torque").items()
     }
-    scales = once(chain.from_iterable(given.scales), "--scale ")
+    scales = scales_typed(given)
     columns = Columns(names, given.units or {}, scales, given.rate, kind)
     return [read_robot_recording(path, columns, name, joints) for path, name in _named(paths)]
+
+
+def scales_typed(given: Given) -> dict[str, float]:
+    """What a count of each quantity is in SI units, as it was typed."""
+    return once(chain.from_iterable(given.scales), "--scale ")
 
 
 def _named(paths: Sequence[Path]) -> list[tuple[Path, str]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import tau
 from typing import TYPE_CHECKING
 
 from quietarm.models import GeometricPath, Robot, RobotOnPath
@@ -140,7 +141,16 @@ def _numbers(
     words = text.split(",")
     if len(words) not in counts:
         raise ValueError(f"{option} has {len(words)} numbers; give {wanted}")
-    return [parse_quantity(word, unit, f"a number of {option}") for word, unit in zip(words, units)]
+    values = [
+        parse_quantity(word, unit, f"a number of {option}") for word, unit in zip(words, units)
+    ]
+    for word, value in list(zip(words, values))[3:]:
+        if abs(value) > tau and is_number(word):
+            raise ValueError(
+                f"{option} turns by {word} rad, more than a turn; were degrees meant? give "
+                f"{word.strip()}deg"
+            )
+    return values
 
 
 def _following_words(robot: Robot) -> str:

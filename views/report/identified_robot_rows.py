@@ -5,7 +5,9 @@ from __future__ import annotations
 from quietarm.machine.held_robots.identify_robot import HeldMode, IdentifiedRobot
 from quietarm.machine.held_robots.robot_lines import measured_lines
 from quietarm.machine.identify import Estimate
+from quietarm.models.robot.robot_notes import notes_of_fit
 from quietarm.ocp.checks import joined
+from quietarm.views.report.robot_rows import WARNING
 from quietarm.views.report.words import counted
 
 Row = tuple[str, str]
@@ -22,8 +24,14 @@ def robot_answer(found: IdentifiedRobot) -> str:
     load = "the load is not told"
     if found.payload is not None:
         load = f"the load is {found.payload.value:.4g} kg (+-{_half(found.payload)})"
+    begin = "The robot"
+    if found.unfit:
+        begin = (
+            "The torques at rest do not fit the posture (check --posture, or are they external "
+            "torques?). If it is right, the robot"
+        )
     return (
-        f"The robot swings at {hertz}{which}, with a damping of {damping}: {springs} "
+        f"{begin} swings at {hertz}{which}, with a damping of {damping}: {springs} "
         f"(+-{_half(found.stiffness)}), and {load}."
     )
 
@@ -31,6 +39,9 @@ def robot_answer(found: IdentifiedRobot) -> str:
 def identified_robot_rows(found: IdentifiedRobot) -> list[Row]:
     """The multiples with their intervals, then every mode at every posture."""
     rows = [("stiffness", f"{_with_interval(found.stiffness)} times that of the robot's file")]
+    if found.unfit:
+        rows.append((WARNING, f"{_UNFIT}: they differ by {100 * found.unfit:.2g} %"))
+    rows += [(WARNING, note.words) for note in notes_of_fit(found.robot.fit)]
     if found.payload is None:
         stated = f"{found.robot.payload:.4g} kg, as in the file: " if found.robot.payload else ""
         rows.append(("load", f"{stated}{found.payload_by}"))
@@ -52,7 +63,11 @@ def robot_notes(found: IdentifiedRobot) -> list[str]:
     notes = [*found.notes]
     if found.payload is not None:
         notes.append(f"for the robot's file, in its beam: tip_mass: {found.payload.value:.4g}")
-    return [*notes, "for the robot's file:", *lines]
+    doubt = f"; {_UNFIT}, check it first" if found.unfit else ""
+    return [*notes, f"for the robot's file{doubt}:", *lines]
+
+
+_UNFIT = "the torques at rest are not those that hold this robot at this posture"
 
 
 def _mode_words(mode: HeldMode) -> str:

@@ -81,7 +81,8 @@ def _mass_rows(robot: Robot) -> list[Row]:
                 f"{beam.length:g} m at {beam.at}{_place_words(beam)}, {mass:.4g} kg and "
                 f"{beam.tip_mass:.4g} kg at its end, {counted(beam.count, 'hinge')} in each "
                 f"direction; clamped, without gravity, it swings "
-                f"at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y",
+                f"at {along_x:.4g} Hz along x and {along_y:.4g} Hz along y, with a damping of "
+                f"{100 * beam.damping:.4g} %",
             )
         )
     return rows
@@ -163,8 +164,9 @@ def _measured_rows(robot: Robot) -> list[Row]:
     measured, fit = robot.measurements, robot.fit
     if fit is None:
         return []
+    springs = f"springs {fit.stiffness:.4g} times as stiff (+-{100 * fit.unsure[0]:.2g} %)"
     if len(measured) == 1:
-        return [("springs scaled to", f"{measured[0].frequency / tau:.5g} Hz, as measured")]
+        return [("measured", f"{springs}, scaled to {measured[0].frequency / tau:.5g} Hz")]
     load = "; the load as stated: these frequencies do not tell it from the springs"
     if fit.tells_payload:
         unsure = f"{100 * fit.unsure[1]:.2g} %"
@@ -175,7 +177,6 @@ def _measured_rows(robot: Robot) -> list[Row]:
         f"{one.frequency / tau:.4g} Hz {100 * misfit:+.2g} %"
         for one, misfit in zip(measured, fit.misfits)
     )
-    springs = f"springs {fit.stiffness:.4g} times as stiff (+-{100 * fit.unsure[0]:.2g} %)"
     return [("measured", f"{springs}{load}; misfit {left}")]
 
 

@@ -164,7 +164,13 @@ class Beam:
                 f"direction of the beam is {list(self.direction)}, none; give one in the frame of "
                 "the link, such as [1, 0, 0]"
             )
-        object.__setattr__(self, "roll", finite("roll of the beam", self.roll, "rad"))
+        roll = finite("roll of the beam", self.roll, "rad")
+        if abs(roll) > math.tau:
+            raise ValueError(
+                f"roll of the beam is {roll:g} rad, more than a turn; were degrees meant? give "
+                f"{roll:g}deg"
+            )
+        object.__setattr__(self, "roll", roll)
 
     @classmethod
     def of_saved(cls, entries: Any) -> Any:

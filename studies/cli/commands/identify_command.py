@@ -11,10 +11,12 @@ import click
 
 from quietarm.machine import Recording
 from quietarm.machine import identify as identification
-from quietarm.machine.held_robots.identify_robot import identify_robot
+from quietarm.machine.held_robots.held_load import TurnedTorquesError
+from quietarm.machine.held_robots.identify_robot import IdentifiedRobot, identify_robot
 from quietarm.machine.held_robots.robot_lines import write_robot
 from quietarm.machine.identify.identified import is_modal
 from quietarm.machine.recordings.read_recording import notes_in_words
+from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models import Plant, Robot
 from quietarm.models.drive import Recorded
 from quietarm.models.joint_motion import kind_of_joints
@@ -29,6 +31,7 @@ from quietarm.studies.cli.recording_options import (
     RECORDED,
     read_recordings,
     read_robot_recordings,
+    scales_typed,
 )
 from quietarm.studies.cli.robot_options import OF_ROBOT, positions_typed
 from quietarm.studies.cli.types import INPUT, NAMES, Parsed
@@ -166,7 +169,7 @@ def _identify_robot(given: Given, robot: Robot, file: Path, paths: Sequence[Path
     kinds = kind_of_joints([robot.kind_of(name) for name in robot.joints])
     read = read_robot_recordings(given, paths, robot.joints, kinds)
     with busy("fitting"):
-        found = identify_robot([one.recording for one in read], robot, postures, given.parts)
+        found = _found(given, [one.recording for one in read], robot, postures)
     finish(
         [(path, partial(write_robot, found, file)) for path in given.output],
         robot_answer(found),
@@ -174,6 +177,23 @@ def _identify_robot(given: Given, robot: Robot, file: Path, paths: Sequence[Path
         *robot_notes(found),
         *notes_in_words(read),
     )
+
+
+def _found(
+    given: Given,
+    recordings: Sequence[RobotRecording],
+    robot: Robot,
+    postures: Sequence[Sequence[float]],
+) -> IdentifiedRobot:
+    """What ring-downs tell; torques of the other sign are refused in the words of --scale."""
+    try:
+        return identify_robot(recordings, robot, postures, given.parts)
+    except TurnedTorquesError as error:
+        scale = scales_typed(given).get("torque", 1.0)
+        cause = str(error).partition(";")[0]
+        typed = f"--scale torque={scale:g}"
+        remedy = f"leave out {typed}" if scale == -1 else f"give --scale torque={-scale:g}"
+        raise ValueError(f"{cause}; {remedy}") from None
 
 
 def _others(plant: Plant, names: Collection[str]) -> list[str]:

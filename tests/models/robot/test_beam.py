@@ -139,6 +139,7 @@ def test_damping_is_that_of_the_first_mode():
     ({"bending_stiffness": 20.0}, "youngs_modulus and bending_stiffness; give one of them"),
     ({"pieces": 0}, "pieces of the beam is 0; give a whole number from 1 up"),
     ({"pieces": 100}, "pieces of the beam is 100; give at most 20"),
+    ({"roll": 90.0}, "roll of the beam is 90 rad, more than a turn; were degrees meant"),
     ({"hinges": "glued"}, "hinges of the beam are 'glued'; give exact"),
 ])  # fmt: skip
 def test_what_no_beam_has_is_refused(changes, words):

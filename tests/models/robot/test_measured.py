@@ -39,6 +39,14 @@ def test_one_frequency_scales_the_springs_until_it_is_met(robot, stated):
     scaled = replace(robot, measured=measured)
     assert scaled.frequencies(POSTURES[1])[0] == pytest.approx(measured.frequency, rel=1e-9)
     assert scaled.payload == robot.payload
+    assert not any("times as stiff" in note.words for note in scaled.notes)
+    # 1.5 in frequency is 2.25 in stiffness, where axes are upright
+    far = Measured(1.5 * float(stated[1][0]), POSTURES[1], damping=0.3)
+    beam = replace(robot.beam, damping=0.5)
+    words = " ".join(note.words for note in replace(robot, beam=beam, measured=far).notes)
+    assert "makes the springs 2.25 times as stiff as in the robot's file" in words
+    assert "damping of the beam is 50 %, which is much; was 0.5 % meant? give 0.5%" in words
+    assert "damping of measured is 30 %" in words
 
 
 def test_several_postures_leave_the_load_where_they_do_not_tell_it(robot, stated):

@@ -121,6 +121,15 @@ def test_sudden_accelerations_are_what_rings(robot, trapezoid_file):
 
 
 @pytest.mark.slow
+def test_a_plan_of_its_own_has_nothing_to_improve(robot, tmp_path):
+    plan = qa.plan_move(robot.task(qa.GeometricPath.line(*ENDS), 0.8))
+    qa.views.export_plan(plan, tmp_path / "move.yaml", rate=500)
+    answer = evaluate_as_timed(robot, tmp_path / "move.yaml")
+    left = f"{1e3 * answer.residual:.2g} mm" if answer.residual > 1e-6 else "less than 0.001 mm"
+    assert answer.diagnosis == f"leaves {left}: as still as a plan; nothing to improve"
+
+
+@pytest.mark.slow
 def test_a_move_of_one_swing_is_a_resonance(robot, tmp_path):
     """However smooth: the plain cycloid in 1.2 swings of the first mode."""
     file = tmp_path / "fast.yaml"

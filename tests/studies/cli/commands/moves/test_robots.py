@@ -275,6 +275,7 @@ def test_a_list_refuses_the_paths_that_a_plan_does(refused, line, words):
     (f"plan ur5_bar.yaml {START} --line-by 0,0,0 --duration 1", "the line has a length of 0 m"),
     (f"plan ur5_bar.yaml {START} --line-by 1,0 --duration 1", "--line-by has 2 numbers; give x,y"),
     (f"plan ur5_bar.yaml {START} --line-to 1,a,0 --duration 1", "'a' is not a number of --line-to"),
+    (f"plan ur5_bar.yaml {START} --line-to 1,0,0,0,180,0 --duration 1", "give 180deg"),
     (f"plan ur5_bar.yaml {START} --line-to 1,0,0 --line-by 1,0,0 --duration 1", "in place of"),
     (f"plan ur5_bar.yaml {ENDS} --line-by 1,0,0 --duration 1", "--target is where joints go"),
     (f"plan ur5_bar.yaml {START} --line-by 1,0,0 --link tool --duration 1", "did you mean 'tool0'"),
