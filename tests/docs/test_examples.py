@@ -337,7 +337,7 @@ def test_the_moves_of_the_page_are_learned_from(run_python, follow):
     assert left[0] == pytest.approx(float(re.findall(r"left ([\d.]+)", of_page)[0]), rel=0.01)
     assert max(left[2:]) < left[0] / 500  # of the page: 0.004 of 7.45 mm
     printed = " ".join(follow("learn-0")[0].split())
-    answer = " ".join(said.split()).partition(" and ")[0]  # of which the frequency has all
+    answer = " ".join(said.partition(" and ")[0].split())  # of which the frequency has all
     assert printed.startswith(answer)
 
 

@@ -9,6 +9,7 @@ import quietarm as qa
 from quietarm.machine.learn.learn_moves import SmoothDeviation
 from quietarm.models import LinearAxis
 from quietarm.studies.sweep import MoveLibrary, learn_set, plan_from, sweep
+from quietarm.studies.sweep.learned_rows import set_sentence
 
 AXIS = LinearAxis(omega1=2 * np.pi * 5, zeta1=0.01, mass=60.0, load=12.0, friction=40.0)
 TASK = qa.PointToPoint(AXIS, target=0.5, duration=0.8)
@@ -67,6 +68,12 @@ def test_recordings_of_four_cells_correct_all_nine(tmp_path):
     ]  # fmt: skip
 
     learned = learn_set(library, runs)
+    definition = learned.definition
+    allowing = replace(definition.settings, residual_limit=1e-3)
+    of_limit = replace(learned, definition=replace(definition, settings=allowing))
+    assert set_sentence(of_limit, AXIS) == (
+        f"{set_sentence(learned, AXIS)}, beside the 1 mm that each plan itself may leave"
+    )
 
     _, new = learned.changed["omega1"]
     assert new == pytest.approx(2 * np.pi * 5.4, rel=1e-3)  # as the machine was simulated
