@@ -94,7 +94,7 @@ def read_robot_recording(
     notes = [unused_in_words(table.unused(used))]
     if "positions" not in headings:
         almost = _almost(table, "positions", columns.names.get("angle") or (), joints)
-        notes.append(f"{name} has {almost}: no positions are used" if almost else "")
+        notes.append(f"no positions are used: it has {almost}" if almost else "")
     return ReadRobotRecording(recording, [note for note in notes if note])
 
 
