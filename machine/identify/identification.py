@@ -21,7 +21,11 @@ from quietarm.machine.identify.identified import (
     is_frequency,
     is_modal,
 )
-from quietarm.machine.identify.swings.frequencies import doubt_units, find_frequencies
+from quietarm.machine.identify.swings.frequencies import (
+    doubt_units,
+    find_frequencies,
+    may_be_alias,
+)
 from quietarm.machine.identify.swings.recording_parts import NO_SWING, fit_parts
 from quietarm.machine.identify.swings.ring_downs import moves
 from quietarm.machine.recordings.mending import without_glitches
@@ -102,9 +106,14 @@ def identify(
     moving = list[PartFitter]()
     for fitter in fitters:
         ring_downs = list[Part]()
+        if coarse := may_be_alias(fitter.recording, fitter.frequency):
+            left_out[fitter.recording.name] = coarse
+            continue
         why = NO_SWING
         if at_rest:
             ring_downs, why = fit_parts(fitter, by_hand=bool(parts))
+        if ring_downs and (coarse := may_be_alias(fitter.recording, fitter.frequency)):
+            ring_downs, why = [], coarse
         fitted += ring_downs
         if not ring_downs and fitter.frequency and (moves(fitter.recording) or not at_rest):
             moving.append(fitter)

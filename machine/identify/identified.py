@@ -212,10 +212,13 @@ class Identified(Answer):
             if not in_torque_alone(self.plant, estimate.parameter)
         ]
         if len(self.parts) == 1:
-            percent = 100 * max((estimate.error for estimate in moving), default=0.0)
+            beyond = ""
+            if moving:
+                widest = max(moving, key=lambda estimate: estimate.error)
+                beyond = f", beyond {100 * widest.error:.2g} % of {widest.parameter} by its fit"
             raise ValueError(
-                "one ring-down does not tell how much the machine varies, beyond "
-                f"{percent:.2g} % by its fit; record several, or {remedy}"
+                f"one ring-down does not tell how much the machine varies{beyond}; record "
+                f"several, or {remedy}"
             )
         least = 1e-6  # of a simulation without noise: a range of none is no range
         return {estimate.parameter: max(estimate.error, least) for estimate in moving}
@@ -232,6 +235,16 @@ class Identified(Answer):
             name: max(error, LEAST_OF_FREQUENCY) if is_frequency(self.plant, name) else error
             for name, error in self.errors.items()
         }
+
+    @property
+    def error_of_frequency(self) -> float:
+        """The largest relative error of a frequency by its intervals, doubtful or not; else 0."""
+        errors = (
+            estimate.error
+            for estimate in self.estimates
+            if is_frequency(self.plant, estimate.parameter)
+        )
+        return max(errors, default=0.0)
 
     def check_unchanged(self, names: Iterable[str]) -> None:
         """Refuse to change parameters on which the measured intervals rest.

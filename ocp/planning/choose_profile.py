@@ -250,13 +250,50 @@ def _longer(request: Request, growth: float = 1.5, middle: int = 3, most: int = 
     if not _will_do(request, durations[middle - 1]):
         longer = (duration for duration in durations[middle:] if _will_do(request, duration))
         first = next(longer, None)
-        return "" if first is None else f"a duration of {first} s will do"
+        return "" if first is None else _in_words(request, first)
     least = durations[middle - 1]
     for duration in reversed(shorter):
         if not _will_do(request, duration):
             break
         least = duration
-    return f"a duration of {least} s will do"
+    return _in_words(request, least)
+
+
+def _in_words(request: Request, duration: str) -> str:
+    """The duration [s] that will do, in words; what else may, where it fails between scenarios."""
+    if _keeps_the_range(request, duration):
+        return f"a duration of {duration} s will do"
+    return _beyond(request, float(duration))
+
+
+def _keeps_the_range(request: Request, duration: str) -> bool:
+    """Return whether a plan that lasts so long [s] is found and keeps all of the errors' range.
+
+    Scenarios are some errors of the range: between them the worst case may be many times as large.
+    """
+    if request.task.uncertainty is None:
+        return True
+    lasting = request.on(replace(request.task, duration=float(duration)))
+    try:
+        return _plan_on_first_that_will_do(lasting).worst is not None
+    except SolverFailedError:
+        return False
+
+
+def _is_longer(request: Request, duration: str) -> bool:
+    """Return whether a duration in words [s] is longer than the one that was refused."""
+    return float(duration) > request.task.duration
+
+
+def _beyond(request: Request, failed: float = 0.0) -> str:
+    """What may do where nothing is known to, in words: wider limits, or more than failed [s]."""
+    task = request.task
+    longer = f"a duration above {max(failed, task.duration):g} s"
+    if task.uncertainty is None:
+        return f"wider limits or {longer} may do"
+    size = "residual limit" if task.band is None else "band"
+    errors = ", ".join(f"{name} +-{100 * share:.3g} %" for name, share in task.ranges.items())
+    return f"a wider {size}, smaller errors than {errors} or {longer} may do"
 
 
 def _will_do(request: Request, duration: str) -> bool:
@@ -268,30 +305,44 @@ def _will_do(request: Request, duration: str) -> bool:
 
 
 def _remedy(request: Request) -> str:
-    """The duration that will do, or may, in words; nothing where none was found at little cost."""
+    """The duration that will do, or may, in words; what has to be wider where none was found."""
     task = request.task
     most_steps = 400
     try:
         shaped = replace(task, duration=shaped_duration(task))
-        may_do = f"a duration of {_rounded_up(shaped.duration)} s may do"
         # to compile a spline of so many steps takes longer than to ask again
         if task.plant.steps_at_once > 1 or default_steps(shaped, least=1) > most_steps:
-            return may_do
+            return _may_do(request, shaped.duration)
     except ValueError:  # nothing limits the joint, or no task takes so long
         return ""
-    size = request.residual_limit
-    task = with_even_scenarios(task)
+    even = with_even_scenarios(task)
     try:
         least = least_time(
-            task, size, None, 1e-2, rounds=0, most_steps=2 * most_steps, roughly=True
+            even,
+            request.residual_limit,
+            None,
+            1e-2,
+            rounds=0,
+            most_steps=2 * most_steps,
+            roughly=True,
         )
     except ValueError:
-        return may_do
+        return _may_do(request, shaped.duration)
     duration = _rounded_up(least.duration)
-    lasting = request.on(replace(task, duration=float(duration))).along(least.profile)
-    if has_a_plan(lasting.problem(), least.coefficients, request.solver):
-        return f"a duration of {duration} s will do"
-    return may_do
+    if not _is_longer(request, duration):
+        return _beyond(request)
+    lasting = request.on(replace(even, duration=float(duration))).along(least.profile)
+    if not has_a_plan(lasting.problem(), least.coefficients, request.solver):
+        return _may_do(request, max(shaped.duration, least.duration))
+    return _in_words(request, duration)
+
+
+def _may_do(request: Request, least: float) -> str:
+    """A duration [s] that may do, in words, with some room; or what else may."""
+    duration = _rounded_up(least)
+    if _is_longer(request, duration):
+        return f"a duration of {duration} s may do"
+    return _beyond(request)
 
 
 def _rounded_up(duration: float, margin: float = 0.05) -> str:

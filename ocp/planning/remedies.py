@@ -142,13 +142,19 @@ def unmet(
 
 
 def _offers(task: PointToPoint, limits: Sequence[Limit], least: Mapping[str, float]) -> str:
-    """Least peaks that a limit does not keep, as limits that would do."""
+    """Least peaks that a limit does not keep, as limits that would do.
+
+    Of an uncertain task they may: its scenarios keep them, and nothing between these was looked at.
+    """
     remedies = [
         _offer(task, limit, least[limit.name] * _ROOM)
         for limit in limits
         if limit.name in least and not limit.keeps(least[limit.name], at_rest=still_of(task))
     ]
-    return f"feasible with all else unchanged: {' or '.join(remedies)}" if remedies else ""
+    if not remedies:
+        return ""
+    how = "feasible" if task.uncertainty is None else "what may be feasible"
+    return f"{how} with all else unchanged: {' or '.join(remedies)}"
 
 
 def _offer(task: PointToPoint, limit: Limit, peak: float) -> str:

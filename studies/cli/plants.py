@@ -11,6 +11,7 @@ from quietarm.machine.identify import Identified
 from quietarm.machine.identify.identified import LEAST_OF_FREQUENCY, is_modal
 from quietarm.models import FlexibleBeam, Plant, Robot, RobotOnPath, known_plants
 from quietarm.models.drive import Recorded
+from quietarm.models.plant import FREQUENCY
 from quietarm.ocp import Uncertainty
 from quietarm.ocp.checks import unknown
 from quietarm.ocp.task import RANGE_OF_BAND
@@ -126,9 +127,20 @@ def uncertainty_of_band(kind: Kind, changed: Collection[str]) -> tuple[Uncertain
         return usual, words
     try:
         kind.check_unchanged(changed)
-        ranges = kind.ranges
     except ValueError as error:
         return usual, f"{words} and its file has no range: {error}"
+    try:
+        ranges = kind.ranges
+    except ValueError as error:
+        least = usual.ranges[FREQUENCY]
+        if kind.error_of_frequency <= least:
+            return usual, f"{words} and its file has no range: {error}"
+        own = Uncertainty({FREQUENCY: kind.error_of_frequency})
+        words = ranges_words(own.ranges).removeprefix("for ")
+        return (
+            own,
+            f"{words}, by its file, which has no range to plan for: {error}",
+        )
     floor = f", {100 * LEAST_OF_FREQUENCY:g} % of a frequency at least"
     return Uncertainty(ranges), f"{ranges_words(ranges).removeprefix('for ')}, as identified{floor}"
 

@@ -16,8 +16,13 @@ from quietarm.machine.recordings.signal_spectra import highest_peaks, spectrogra
 from quietarm.models.joint_motion import ROTARY
 
 Array = NDArray[np.float64]
+_GOOD_SAMPLES = 20
 FASTEST = 500.0
 """No arm swings at more hertz: a wrong unit of the time is more likely."""
+LEAST_SAMPLES = 6.0
+"""In a swing. Evenly spaced samples are the same for a frequency and for those that are mirrored
+about the rate: with so many samples the next one is five times as fast, which whoever pushed the
+machine saw not to be so. With fewer it is nearer, and nothing in the recording tells them apart."""
 Candidates = dict[float, float]
 """How loud a recording swings, by frequency [Hz]."""
 
@@ -47,6 +52,19 @@ def find_frequencies(recordings: Sequence[Recording]) -> list[float]:
             )
         frequencies.append(frequency)
     return frequencies
+
+
+def may_be_alias(recording: Recording, frequency: float) -> str:
+    """Say which other frequencies [Hz] the samples may be of; nothing where they are dense."""
+    rate = 1 / recording.step
+    if not frequency or rate >= LEAST_SAMPLES * frequency:
+        return ""
+    mirrored = (frequency, rate - frequency, rate + frequency)
+    return (
+        f"{rate / frequency:.2g} samples a swing: the true frequency may be "
+        f"{', '.join(f'{one:.3g}' for one in mirrored)} Hz; record at {_GOOD_SAMPLES} samples a "
+        "swing or more"
+    )
 
 
 def _near(table: Candidates, frequency: float) -> Candidates:

@@ -51,7 +51,28 @@ def fit_parts(fitter: PartFitter, by_hand: bool = False) -> tuple[list[Part], st
         parts = _well_damped(fitter, by_hand) or parts
     if moves(recording):
         parts = with_hub(fitter, parts, slice(None))
-    return parts, "" if parts else why
+    enough = list[Part]()
+    for part in parts:
+        short = _too_short(fitter, part)
+        why = short or why
+        if not short:
+            enough.append(part)
+    return enough, "" if enough else why
+
+
+def _too_short(fitter: PartFitter, part: Part) -> str:
+    """Say of how few swings a part is, to the end of what is recorded; nothing where it has two.
+
+    A fit meets less of a swing with many frequencies. A swing that is damped well is over before.
+    """
+    frequency = fitter.frequency_of(part.vector)
+    swings = (float(fitter.recording.time[-1]) - part.begin) * frequency
+    if swings >= LEAST_PERIODS:
+        return ""
+    return (
+        f"{swings:.2g} swings of {frequency:.3g} Hz from {part.begin:.6g} s on; record "
+        f"{LEAST_PERIODS:g} at least"
+    )
 
 
 def _periodic(fitter: PartFitter, by_hand: bool) -> tuple[list[Part], str]:

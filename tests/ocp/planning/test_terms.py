@@ -100,6 +100,29 @@ def test_a_band_out_of_reach_is_refused_soon_with_a_duration_that_will_do(task):
     assert plan.worst.residual <= 1.001 * task.band_limit
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("duration", [1.0, 1.3])
+def test_no_duration_is_named_that_does_not_keep_the_whole_range(duration):
+    axis = LinearAxis(omega1=3.3 * 2 * pi, zeta1=0.008, mass=60.0, load=12.0)
+    task = PointToPoint(
+        axis,
+        0.6,
+        duration,
+        uncertainty=Uncertainty({"frequency": 0.6}),
+        band=2e-4,
+        speed_limit=1.2,
+        acceleration_limit=5.0,
+        jerk_limit=100.0,
+        torque_limit=500.0,
+    )
+    # 1.11 s was recommended in both, for it keeps the scenarios, and not what is between them
+    said = r"a wider band, smaller errors than frequency \+-60 % or a duration above (\S+) s may do"
+    with pytest.raises(InfeasibleTaskError, match=said) as error:
+        plan_move(task)
+    assert "will do" not in str(error.value)
+    assert float(re.search(said, str(error.value))[1]) >= duration
+
+
 def test_more_terms_keep_a_residual_limit_in_the_worst_case_that_six_cannot():
     task = PointToPoint(
         SingleLinkManipulator(omega=21.0), 0.82, 0.6, uncertainty=Uncertainty({"frequency": 0.1})

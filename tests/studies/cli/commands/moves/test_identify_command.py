@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -50,6 +51,20 @@ def test_pushes_make_a_machine_that_is_planned_for(push, done, refused):
     assert (task.plant.friction, task.plant.omega) == (0.02, found.plant.omega)
     out = done("identify --check arm.json again1.csv --tip tip_mm --quiet")
     assert "of the swing predicted over five periods, at least" in out
+
+
+@pytest.mark.slow
+def test_a_band_is_for_the_interval_of_a_file_that_has_no_range_but_a_wide_one(push, done):
+    done(f"{PUSH} --output one.json")
+    one = Identified.load("one.json")
+    wide = [
+        replace(known, low=0.9 * known.value, high=1.1 * known.value) for known in one.estimates
+    ]
+    replace(one, estimates=tuple(wide)).save("wide.json")
+    plan = "--quiet --target 30deg --duration 1 --band 1mm --output plan.json"
+    for name, error in {"one": 0.05, "wide": 0.1}.items():
+        done(f"plan {name}.json {plan}")
+        assert Plan.load("plan.json").task.ranges == {"frequency": pytest.approx(error)}
 
 
 @pytest.mark.slow
