@@ -22,7 +22,7 @@ _FOLDER = os.path.dirname(__file__)
 if not os.path.isdir(os.path.join(_FOLDER, "ocp")):
     __path__.append(os.path.dirname(_FOLDER))
 
-__version__ = "2.1.0.dev0"
+__version__ = "2.1.0"
 
 sys.meta_path.append(MovedRooms())
 
