@@ -192,6 +192,6 @@ def test_a_named_profile_far_from_a_robust_limit_is_refused_without_a_solver(sol
 def test_limits_far_out_of_reach_are_refused_with_a_duration_that_will_do(solves):
     with pytest.raises(InfeasibleTaskError, match=r"a duration of (\S+) s will do") as error:
         qa.plan_move(OUT_OF_REACH)
-    assert len(solves) < 10  # of the remedy alone
+    assert len(solves) < 20  # of the remedy and of the plan by which it is confirmed
     longer = float(str(error.value).split("duration of ")[1].split()[0])
     assert 0.5 < longer < 1.5
