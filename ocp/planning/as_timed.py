@@ -118,7 +118,7 @@ class TimedAnswer:
 
     @property
     def _is_as_still_as_a_plan(self) -> bool:
-        """Whether a plan would leave as much, or less by what nobody sees."""
+        """Return whether a plan would leave as much, or less by what nobody sees."""
         if self.residual <= _AS_STILL:
             return True
         left = self._left_by_plan
@@ -126,7 +126,7 @@ class TimedAnswer:
 
     @cached_property
     def _left_by_plan(self) -> float | QuietarmError:
-        """What a plan leaves [m], or why there is none."""
+        """Return what a plan leaves [m], or why there is none."""
         try:
             return _left_by(self.plan)
         except QuietarmError as error:

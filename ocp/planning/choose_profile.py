@@ -286,7 +286,7 @@ def _is_longer(request: Request, duration: str) -> bool:
 
 
 def _beyond(request: Request, failed: float = 0.0) -> str:
-    """What may do where nothing is known to, in words: wider limits, or more than failed [s]."""
+    """Say what may do where nothing is known to: wider limits, or more than failed [s]."""
     task = request.task
     longer = f"a duration above {max(failed, task.duration):g} s"
     if task.uncertainty is None:

@@ -95,7 +95,7 @@ def read_robot_recordings(
 
 
 def scales_typed(given: Given) -> dict[str, float]:
-    """What a count of each quantity is in SI units, as it was typed."""
+    """Return what a count of each quantity is in SI units, as it was typed."""
     return once(chain.from_iterable(given.scales), "--scale ")
 
 

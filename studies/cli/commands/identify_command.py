@@ -185,7 +185,7 @@ def _found(
     robot: Robot,
     postures: Sequence[Sequence[float]],
 ) -> IdentifiedRobot:
-    """What ring-downs tell; torques of the other sign are refused in the words of --scale."""
+    """Return what ring-downs tell; refuse torques of the other sign in the words of --scale."""
     try:
         return identify_robot(recordings, robot, postures, given.parts)
     except TurnedTorquesError as error:
