@@ -218,13 +218,16 @@ def test_ways_are_shares_of_the_path_and_have_no_angles(call):
 
 @pytest.mark.slow
 def test_limits_by_joint_and_of_the_file(call):
-    """A limit that is typed stands in place of that of the file."""
+    """A limit that is typed stands in place of that of the file, of the joint that it names."""
     Path("limited.yaml").write_text(Path("ur5_bar.yaml").read_text() + "limits: urdf\n")
     line = f"plan limited.yaml {ENDS} --duration 2 --torque-limit elbow_joint=30,wrist_1_joint=20Nm"
     code, out, _ = call(f"{line} --output move.json")
     assert code == 0
     task = qa.Plan.load("move.json").task
-    assert dict(task.torque_limit) == {"elbow_joint": 30.0, "wrist_1_joint": 20.0}
+    assert dict(task.torque_limit) == {
+        "shoulder_pan_joint": 150.0, "shoulder_lift_joint": 150.0, "elbow_joint": 30.0,
+        "wrist_1_joint": 20.0, "wrist_2_joint": 28.0, "wrist_3_joint": 28.0,
+    }  # fmt: skip
     assert dict(task.speed_limit)["elbow_joint"] == 3.15
     assert "elbow_joint 30 N m" in out
 
