@@ -26,19 +26,20 @@ class Excess(NamedTuple):
     """The least excess of a problem's limits, the coefficients that have it, and whether it holds.
 
     Negative where all limits may be narrowed by that share. It holds where linearised and true
-    excess agree. A motion that does not arrive as it has to says nothing of the least excess.
+    excess agree. It is unsure where a linear program's motion does not arrive as it has to: that of
+    the motion before says nothing of the least excess.
     """
 
     share: float
     coefficients: Array
     holds: bool
-    arrives: bool
+    is_unsure: bool
 
     def is_beyond(self, share: float) -> bool:
         """Return whether the limits surely have to be wider by more than a share."""
         # that far off linear programs need not agree with the motion
         hopeless = 1.0
-        return self.arrives and self.share > (share if self.holds else hopeless)
+        return not self.is_unsure and self.share > (share if self.holds else hopeless)
 
 
 @on_one_thread
@@ -54,7 +55,7 @@ def least_excess(problem: Program, start: Array, reach: float = 3.0) -> Excess:
     # misses of the state on arrival, or of the residual's limit, as shares.
     agreement = 1e-4
     most_missed = 1e-4
-    nearly = 0.05  # of one that is no answer
+    is_unsure = False
     for _ in range(12):
         step = linearised.step_of_least_excess(reach)
         if step is None:
@@ -62,14 +63,14 @@ def least_excess(problem: Program, start: Array, reach: float = 3.0) -> Excess:
         following = _Linearised(problem, linearised.coefficients + step[:-1])
         near = following.missed <= most_missed
         if near and abs(following.excess - step[-1]) <= agreement:
-            return Excess(following.excess, following.coefficients, holds=True, arrives=True)
+            return Excess(following.excess, following.coefficients, holds=True, is_unsure=False)
         if following.missed <= max(linearised.missed, funnel):
             linearised = following
             funnel *= 0.5
         else:
             reach = 0.3 * float(np.abs(step[:-1]).max())
-    arrives = linearised.missed <= nearly
-    return Excess(linearised.excess, linearised.coefficients, holds=False, arrives=arrives)
+            is_unsure = True
+    return Excess(linearised.excess, linearised.coefficients, holds=False, is_unsure=is_unsure)
 
 
 class _Linearised:
