@@ -91,4 +91,6 @@ def test_a_limit_that_does_not_hold_is_refused_with_what_is_left(task, monkeypat
     monkeypatch.setattr(plan_along, "_TIGHTENINGS", 0)
     task = replace(task, uncertainty=qa.Uncertainty({"frequency": 0.2}))
     with pytest.raises(SolverFailedError, match=r"above its limit of 0\.002 m"):
+        qa.plan_move(task, qa.CycloidPolynomial(18), residual_limit=2e-3)
+    with pytest.raises(SolverFailedError, match=r"smaller errors than frequency \+-20 % or a "):
         qa.plan_move(task, residual_limit=2e-3)
