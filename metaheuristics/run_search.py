@@ -164,7 +164,7 @@ def search(
         When an argument is out of range or missing, the front to start from is of another
         profile or beyond the bound, or the function fails.
     """
-    names_of_function = {
+    names_of_function: dict[str, Any] = {
         "lower": lower, "upper": upper, "units": units, "constraints": constraints,
         "reference": reference, "vectorized": vectorized,
     }  # fmt: skip
