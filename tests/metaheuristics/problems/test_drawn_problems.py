@@ -33,6 +33,7 @@ def test_names_are_those_of_the_published_scales():
     assert len(drawn_problems()) == 210  # 18 moves by 6 coefficients and 4 limits; 10 by 3 more
 
 
+@pytest.mark.slow
 def test_a_drawn_problem_is_a_problem_as_any_other():
     problem = problem_of(LIMITED)
     assert pickle.loads(pickle.dumps(problem)) == problem
