@@ -34,7 +34,7 @@ SETTLES = 0.25
 
 
 class Rival(Protocol):
-    """What makes the next set points from what swung after a move [m], a row each."""
+    """A way to make the next set points from what swung after a move [m], a row each."""
 
     def next(self, asked: SetPoints, swing: np.ndarray) -> SetPoints:
         """The set points of the next move."""

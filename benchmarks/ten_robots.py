@@ -306,7 +306,7 @@ def rows_of(name: str) -> Iterator[dict[str, object]]:
 
 
 def measured(truth: Any, motion: Any, task: Any) -> dict[str, object]:
-    """What a motion leaves and takes in MuJoCo, and the largest shares of the limits."""
+    """Measure what a motion leaves and takes in MuJoCo, and the largest shares of the limits."""
     from parts.robot_motions import LIMITED, peaks_of
 
     residual, energy, torques = truth.residual_and_energy(motion, task.duration)
@@ -318,7 +318,7 @@ def measured(truth: Any, motion: Any, task: Any) -> dict[str, object]:
 
 
 def stated(plan: Any) -> dict[str, object]:
-    """What quietarm says of a plan: by its modes, and by all equations with one hinge more."""
+    """Return what quietarm says of a plan: by its modes, and in full with one hinge more."""
     in_full = plan.candidate.in_full
     return {
         "stated_mm": f"{1e3 * plan.residual:.2g}",

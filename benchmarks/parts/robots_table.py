@@ -81,7 +81,7 @@ def passes_limit(row: dict[str, str]) -> bool:
 
 
 def _against_stated(rows: Rows) -> Iterator[str]:
-    """What is said of the plans, beside MuJoCo."""
+    """Say what quietarm states of the plans, beside MuJoCo."""
     yield (
         "| plan | residual by the modes [mm] | in full | MuJoCo | "
         "energy by the modes [J] | in full | MuJoCo |"

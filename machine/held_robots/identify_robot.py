@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import tau
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from quietarm.machine.identify.combine import Group, estimate
 from quietarm.machine.identify.identified import Estimate
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models.robot import Measured, Robot
+from quietarm.models.robot.dynamics.measured_fit import MeasuredFit
 from quietarm.ocp.checks import instance, several, takes
 
 Array = NDArray[np.float64]
@@ -23,6 +24,8 @@ _SAME_POSTURE = 0.01
 """Positions of one posture differ by less [rad or m]: encoders and controllers flicker."""
 _LEAST_WITHIN = 1e-3
 """Share within which a frequency is stated at best."""
+_DAMPED_MODES = 2
+"""The damping of these is met: that of faster ones is another, and soon over."""
 BY_FREQUENCIES = "by the frequencies"
 BY_TORQUES = "by the torques at rest"
 
@@ -176,37 +179,52 @@ def _identified(
     if not damped:
         measured = tuple(replace(one, damping=None) for one in measured)
         notes = [*notes, "the robot's file has no damping that could be scaled: give some"]
-    robot = replace(before, measured=measured)
-    assert robot.fit is not None
-    factor, unsure = robot.fit.stiffness, robot.fit.unsure[0]
-    damping = robot.fit.damping
-    if robot.fit.tells_payload:
-        share = robot.fit.unsure[1]
-        mass = robot.payload
-        payload: Estimate | None = _estimate("payload", mass, share * mass)
-        robot, why = _carrying(robot, mass), BY_FREQUENCIES
-    else:
-        payload, why = _by_torques(robot, ring_downs)
-        if payload is not None:
-            robot = _carrying(robot, payload.value)
-            heavy = _carrying(robot, payload.high)
-            assert robot.fit is not None
-            assert heavy.fit is not None
-            factor = robot.fit.stiffness
-            unsure = float(np.hypot(unsure, heavy.fit.stiffness / factor - 1))
+    scaled = replace(before, measured=measured)
+    assert scaled.fit is not None
+    robot, stiffness, payload, why = _with_load(scaled, scaled.fit, ring_downs)
     fit = robot.fit
     assert fit is not None
     held = _held(ring_downs)
     return IdentifiedRobot(
         robot=robot,
         modes=tuple(replace(one, misfit=misfit) for one, misfit in zip(told, fit.misfits)),
-        stiffness=_estimate("stiffness", factor, unsure * factor),
-        damping=damping,
+        stiffness=stiffness,
+        damping=scaled.fit.damping,
         payload=payload,
         payload_by=why,
         notes=tuple(dict.fromkeys(notes)),
         unfit=unfit_share(robot, held) if held else 0.0,
     )
+
+
+class _LoadedRobot(NamedTuple):
+    """A robot with its load, the multiple of its springs, and by what the load is known."""
+
+    robot: Robot
+    stiffness: Estimate
+    payload: Estimate | None
+    why: str
+
+
+def _with_load(robot: Robot, fit: MeasuredFit, ring_downs: Sequence[RingDown]) -> _LoadedRobot:
+    """Return a robot, scaled to its frequencies, with the load that these or the torques tell."""
+    unsure, share = fit.unsure
+    if fit.tells_payload:
+        mass = robot.payload
+        stiffness = _estimate("stiffness", fit.stiffness, unsure * fit.stiffness)
+        payload = _estimate("payload", mass, share * mass)
+        return _LoadedRobot(_carrying(robot, mass), stiffness, payload, BY_FREQUENCIES)
+    by_torques, why = _by_torques(robot, ring_downs)
+    if by_torques is None:
+        stiffness = _estimate("stiffness", fit.stiffness, unsure * fit.stiffness)
+        return _LoadedRobot(robot, stiffness, None, why)
+    loaded = _carrying(robot, by_torques.value)
+    heavier = _carrying(robot, by_torques.high)
+    assert loaded.fit is not None
+    assert heavier.fit is not None
+    factor = loaded.fit.stiffness
+    unsure = float(np.hypot(unsure, heavier.fit.stiffness / factor - 1))
+    return _LoadedRobot(loaded, _estimate("stiffness", factor, unsure * factor), by_torques, why)
 
 
 def _carrying(robot: Robot, mass: float) -> Robot:
@@ -219,7 +237,7 @@ def _by_torques(robot: Robot, ring_downs: Sequence[RingDown]) -> tuple[Estimate 
     """The load by what holds the joints, or why that does not tell it."""
     if not robot.stated_payload:
         return None, (
-            "the robot's file has no load: give the beam a tip_mass, as 0.1kg, for it to be sought"
+            "the robot's file has no load: to seek one, give the beam a tip_mass, such as 0.1kg"
         )
     held = _held(ring_downs)
     if not held:
@@ -278,7 +296,3 @@ def _measured(told: HeldMode) -> Measured:
         damping=damping.value if is_known else None,
         within=max(half, _LEAST_WITHIN),
     )
-
-
-_DAMPED_MODES = 2
-"""The damping of these is met: that of faster ones is another, and soon over."""

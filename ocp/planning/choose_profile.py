@@ -241,48 +241,43 @@ def _with_a_duration(error: InfeasibleTaskError, request: Request) -> Infeasible
 
 
 def _longer(request: Request, growth: float = 1.5, middle: int = 3, most: int = 5) -> str:
-    """The first of some longer durations that will do without limits, in words; or nothing.
+    """Say which of some longer durations is the first that will do without limits; or nothing.
 
     Shorter ones are tried while they will do, else longer ones: what will not do takes longest.
     """
-    durations = [f"{request.task.duration * growth**power:.3g}" for power in range(1, most + 1)]
+    durations = [_rounded(request.task.duration * growth**power) for power in range(1, most + 1)]
     *shorter, _ = durations[:middle]
     if not _will_do(request, durations[middle - 1]):
         longer = (duration for duration in durations[middle:] if _will_do(request, duration))
         first = next(longer, None)
-        return "" if first is None else _in_words(request, first)
+        return "" if first is None else _say_duration(request, first)
     least = durations[middle - 1]
     for duration in reversed(shorter):
         if not _will_do(request, duration):
             break
         least = duration
-    return _in_words(request, least)
+    return _say_duration(request, least)
 
 
-def _in_words(request: Request, duration: str) -> str:
-    """The duration [s] that will do, in words; what else may, where it fails between scenarios."""
+def _say_duration(request: Request, duration: float) -> str:
+    """Say that a duration [s] will do; if it fails between scenarios, what else may."""
     if _keeps_the_range(request, duration):
-        return f"a duration of {duration} s will do"
-    return _beyond(request, float(duration))
+        return f"a duration of {duration:g} s will do"
+    return _beyond(request, duration)
 
 
-def _keeps_the_range(request: Request, duration: str) -> bool:
+def _keeps_the_range(request: Request, duration: float) -> bool:
     """Return whether a plan that lasts so long [s] is found and keeps all of the errors' range.
 
     Scenarios are some errors of the range: between them the worst case may be many times as large.
     """
     if request.task.uncertainty is None:
         return True
-    lasting = request.on(replace(request.task, duration=float(duration)))
+    lasting = request.on(replace(request.task, duration=duration))
     try:
         return _plan_on_first_that_will_do(lasting).worst is not None
     except SolverFailedError:
         return False
-
-
-def _is_longer(request: Request, duration: str) -> bool:
-    """Return whether a duration in words [s] is longer than the one that was refused."""
-    return float(duration) > request.task.duration
 
 
 def _beyond(request: Request, failed: float = 0.0) -> str:
@@ -296,10 +291,10 @@ def _beyond(request: Request, failed: float = 0.0) -> str:
     return f"a wider {size}, smaller errors than {errors} or {longer} may do"
 
 
-def _will_do(request: Request, duration: str) -> bool:
-    """Return whether there is a plan without limits in a duration, in words [s]."""
+def _will_do(request: Request, duration: float) -> bool:
+    """Return whether there is a plan without limits in a duration [s]."""
     task = request.task
-    longer = with_even_scenarios(replace(task, duration=float(duration)))
+    longer = with_even_scenarios(replace(task, duration=duration))
     lasting = request.on(longer).along(more_terms(task))
     return has_a_plan(lasting.problem(), lasting.profile.plain, shortened(request.solver))
 
@@ -328,23 +323,28 @@ def _remedy(request: Request) -> str:
         )
     except ValueError:
         return _may_do(request, shaped.duration)
-    duration = _rounded_up(least.duration)
-    if not _is_longer(request, duration):
+    duration = _with_room(least.duration)
+    if duration <= task.duration:
         return _beyond(request)
-    lasting = request.on(replace(even, duration=float(duration))).along(least.profile)
+    lasting = request.on(replace(even, duration=duration)).along(least.profile)
     if not has_a_plan(lasting.problem(), least.coefficients, request.solver):
         return _may_do(request, max(shaped.duration, least.duration))
-    return _in_words(request, duration)
+    return _say_duration(request, duration)
 
 
 def _may_do(request: Request, least: float) -> str:
-    """A duration [s] that may do, in words, with some room; or what else may."""
-    duration = _rounded_up(least)
-    if _is_longer(request, duration):
-        return f"a duration of {duration} s may do"
+    """Say that a duration [s] may do, with some room; or what else may."""
+    duration = _with_room(least)
+    if duration > request.task.duration:
+        return f"a duration of {duration:g} s may do"
     return _beyond(request)
 
 
-def _rounded_up(duration: float, margin: float = 0.05) -> str:
-    """A duration [s] that is longer by a share, so that a plan has room, in three digits."""
-    return f"{(1 + margin) * duration:.3g}"
+def _with_room(duration: float, margin: float = 0.05) -> float:
+    """Return a duration [s] that is longer by a share, so that a plan has room."""
+    return _rounded((1 + margin) * duration)
+
+
+def _rounded(duration: float) -> float:
+    """Return a duration [s] in three digits, as it is said."""
+    return float(f"{duration:.3g}")
