@@ -199,7 +199,7 @@ def _limit_rows(robot: Robot) -> list[Row]:
 def free_joints_words(joints: Sequence[str], limited: Collection[str]) -> str:
     """Name the joints that limits of some joints leave free; nothing if they leave none."""
     free = [joint for joint in joints if limited and joint not in limited]
-    return f"; none for {', '.join(free)}" if free else ""
+    return f" (none for {', '.join(free)})" if free else ""
 
 
 def _with_units(robot: Robot, values: Mapping[str, float], unit: Unit) -> str:

@@ -50,6 +50,7 @@ def test_rows_of_a_gantry_are_in_metres_and_newtons(plan_of):
     assert rows["peak speed"] == f"{plan.motion.peak_speed:.4g} m/s"
     assert rows["peak acceleration"].startswith(f"{plan.motion.peak_acceleration:.4g} m/s^2")
     assert "force x 900 N; radial-axis 500 N, speed radial-axis 2 m/s" in rows["limits"]
+    assert rows["limits"].endswith("speed radial-axis 2 m/s (none for x)")
     html = plan._repr_html_()
     assert "force x 900 N; radial-axis 500 N" in html
     assert "peak force" in html
