@@ -52,15 +52,19 @@ def spans_in_words(candidates: Sequence[JudgedMotion], place: str) -> list[str]:
 
 
 def figure_words(candidate: JudgedMotion, figure: Figure, drawn: bool = False) -> str:
-    """Return a figure in its unit; a peak of joints of both kinds is that of each kind.
+    """Return a figure in its unit; a peak of several joints with the joint that has it.
 
-    As it is `drawn` powers of units are raised.
+    Of joints of both kinds it is the peak of each kind. As it is `drawn` powers of units are
+    raised.
     """
     plant = candidate.task.plant
     quantity = QUANTITIES.get(figure.quantity)
-    if quantity is None or plant.joint != MIXED or not quantity.of_joints:
+    if quantity is None or len(plant.joint_names) < 2 or not quantity.of_joints:
         return figure.words(candidate.figures[figure.name], plant, drawn)
     peaks = candidate.peaks_of_joints(quantity).tolist()
+    if plant.joint != MIXED:
+        joint = plant.joint_names[int(np.argmax(peaks))]
+        return f"{figure.words(candidate.figures[figure.name], plant, drawn)} ({joint})"
     largest = dict[str, tuple[float, str]]()
     for peak, joint, kind in zip(peaks, plant.joint_names, plant.joint_kinds):
         own = figure.unit.on(kind, plant.tip_unit)
