@@ -200,16 +200,19 @@ class JudgedMotion(ActingMotion):
 
     def peaks_of_joints(self, quantity: Quantity) -> NDArray[np.float64]:
         """Return the largest absolute value of a quantity of the joints, of each of them."""
-        return np.abs(self._ranges(quantity)).max(axis=1)
+        return np.abs(self.ranges_of_joints(quantity)).max(axis=1)
 
     def _range(self, quantity: Quantity) -> tuple[float, float]:
         """Least and largest value in the scenarios that count, between the samples as well."""
         counted = self.scenarios if quantity.in_scenarios else (self,)
-        ranges = np.concatenate([motion._ranges(quantity) for motion in counted])
+        ranges = np.concatenate([motion.ranges_of_joints(quantity) for motion in counted])
         return float(ranges.min()), float(ranges.max())
 
-    def _ranges(self, quantity: Quantity) -> NDArray[np.float64]:
-        """Least and largest of each value of a quantity on this plant."""
+    def ranges_of_joints(self, quantity: Quantity) -> NDArray[np.float64]:
+        """Return the least and the largest of each value of a quantity on this plant, a row each.
+
+        Of a quantity of the joints these are the values of each joint.
+        """
         return self._largest(self.values_of(quantity))
 
     def _largest(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -512,10 +512,30 @@ class Limit:
         return self.lower == -self.upper
 
     @property
+    def is_of_shares(self) -> bool:
+        """Return whether it has bounds for each joint, so that its values are shares of these."""
+        return isinstance(self.quantity.values, Shares)
+
+    @property
     def is_peak(self) -> bool:
         """Return whether it limits the largest absolute value of a quantity in the diagnostics."""
-        of_one = not isinstance(self.quantity.values, Shares)
-        return of_one and self.both_ways and self.name in (RESIDUAL, *QUANTITIES)
+        alike = not self.is_of_shares and self.both_ways
+        return alike and self.name in (RESIDUAL, *QUANTITIES)
+
+    def bounds_of_joints(self, plant: Plant) -> tuple[JointBounds, ...]:
+        """Return the bounds of each joint that it limits; none of a plant of one joint.
+
+        They are in the order of its values. What is limited beside the joints has none either.
+        """
+        if isinstance(self.quantity.values, Shares):
+            return self.quantity.values.bounds
+        if len(plant.joint_names) < 2 or not self.quantity.of_joints:
+            return ()
+        units = units_of_joints(self.name, plant)
+        return tuple(
+            JointBounds(joint, place, self.lower, self.upper, unit)
+            for place, (joint, unit) in enumerate(units.items())
+        )
 
     @property
     def size(self) -> float:

@@ -25,7 +25,7 @@ from quietarm.ocp.checks import positive, whole
 from quietarm.ocp.files import unwritable, write_whole
 from quietarm.views.film_settings import FRAMES, WIDTHS
 from quietarm.views.pictures.axes import TITLE, legend_of, new_figure
-from quietarm.views.pictures.grammar import AFTER_ARRIVAL, GREY, INK, PALE
+from quietarm.views.pictures.grammar import AFTER_ARRIVAL, FAINT, GREY, INK, PALE
 from quietarm.views.pictures.motion import Motions, draw_briefly, lines_of
 from quietarm.views.pictures.space import Camera, Room
 from quietarm.views.pictures.space_drawing import Update, draw_in_space
@@ -297,6 +297,12 @@ def _explain(figure: Figure, structures: Sequence[Structure], below: Sequence[Ax
     handles.append(Line2D([], [], color=GREY, linewidth=2.0, alpha=AFTER_ARRIVAL))
     in_space = [one for one in structures if one.line.plan.task.plant.in_space]
     labels.append("way of the tip" if in_space else "way of the tip after arrival")
+    if in_space:
+        handles.append(Patch(facecolor=INK))
+        labels.append("robot")
+    if any(structure.on_support for structure in in_space):
+        handles.append(Patch(facecolor=FAINT))
+        labels.append("support")
     for words in {Room.of([one]).square_words for one in in_space}:
         handles.append(Patch(facecolor=PALE))
         labels.append(words)

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.metaheuristics.evaluation.population import figures_of_motions
-from quietarm.ocp import Front, Plan
+from quietarm.ocp import Front, JudgedMotion, Plan
 from quietarm.ocp.checks import quoted, table_of
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY, FIGURES
 from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.front.points import refuse_beyond_box
+from quietarm.ocp.joint_words import peak_words
 from quietarm.ocp.limits import RESIDUAL
 from quietarm.ocp.objectives import Objective, objectives_on
 from quietarm.ocp.planning.certify import OVERRUN
@@ -60,9 +61,11 @@ def _check_points(front: Front) -> None:
         _refuse_other_figures(which, front, front.objective_values[i], figures)
         for limit, passed in zip(front.task.limits, violations):
             if not passed <= OVERRUN:
+                row = np.asarray(front.coefficients)[i]
+                motion = JudgedMotion.of_profile(front.task, front.profile, row)
                 raise ValueError(
                     f"{which} breaks the {limit.label} limit of {limit.bounds}: its coefficients "
-                    f"give {limit.describe(limit.size * (1 + passed))}"
+                    f"give {peak_words(limit, motion, OVERRUN)}"
                 )
 
 

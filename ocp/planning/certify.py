@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.ocp.errors import SolverFailedError
 from quietarm.ocp.figures import ENERGY, Figures
+from quietarm.ocp.joint_words import passed_words
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL, Limit, Quantity
 from quietarm.ocp.profiles.check_profile import check_motion
@@ -374,8 +375,8 @@ def excess_error(
     for limit in limits:
         peak = limit.peak_of(verified)
         if not limit.keeps(peak, OVERRUN, still):
-            return SolverFailedError(
-                f"the verified {limit.label} is {limit.describe(peak)}, above its limit of "
-                f"{limit.bounds}: {remedy}"
-            )
+            words = f"{limit.describe(peak)}, above its limit of {limit.bounds}"
+            if verified.candidate is not None:
+                words = passed_words(limit, verified.candidate, OVERRUN)
+            return SolverFailedError(f"the verified {limit.label} is {words}: {remedy}")
     return None

@@ -18,7 +18,7 @@ from quietarm.ocp.checks import IF_STATED, CountFromOne, NotNegative, count_of, 
 from quietarm.ocp.errors import InfeasibleTaskError, SolveStatus
 from quietarm.ocp.figures import ENERGY, figures_in
 from quietarm.ocp.files import write_whole
-from quietarm.ocp.joint_words import figure_words
+from quietarm.ocp.joint_words import figure_words, passed_words
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import NOTEBOOK, RESIDUAL, Limit
 from quietarm.ocp.motion_answer import MotionAnswer
@@ -356,8 +356,7 @@ def only_motion(
     broken = list[str]()
     for name in plan.motion.exceeded(limits.values(), OVERRUN):
         limit = limits[name]
-        peak = limit.describe(limit.peak_of(plan.motion))
-        broken.append(f"its {limit.label} reaches {peak}, above {limit.bounds}")
+        broken.append(f"its {limit.label} is {passed_words(limit, plan.candidate, OVERRUN)}")
     if broken:
         raise InfeasibleTaskError(
             f"the {profile.label} has one motion for this move, and {'; '.join(broken)}: "

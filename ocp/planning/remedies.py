@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError, SolveStatus
+from quietarm.ocp.joint_words import peaks_beyond
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import RESIDUAL, Limit
-from quietarm.ocp.planning.certify import by_cvodes, certify_one
+from quietarm.ocp.planning.certify import Certified, by_cvodes, certify_one
 from quietarm.ocp.planning.residual_limit import band_words
 from quietarm.ocp.rest import still_of
 from quietarm.ocp.solvers.problem import MOST_SOLVER_STEPS, Program, Solution
@@ -49,24 +51,38 @@ def offers_for(problem: Program, starts: Sequence[Array], solver: Solver) -> str
     return _offers(problem.task, problem.limits, _confirm(problem, least, solver))
 
 
-def _confirm(problem: Program, least: Mapping[str, Solution], solver: Solver) -> dict[str, float]:
+@dataclass(frozen=True)
+class Offer:
+    """A limit that would do.
+
+    Attributes
+    ----------
+    peak : float
+        Its size, without the room that is added to what is quoted [SI unit; shares of limits of
+        joints].
+    motion : JudgedMotion, optional
+        A motion that keeps it, and all other limits.
+    """
+
+    peak: float
+    motion: JudgedMotion | None = None
+
+
+def _confirm(problem: Program, least: Mapping[str, Solution], solver: Solver) -> dict[str, Offer]:
     """Return those of the least peaks with which there is a plan, as CVODES finds them."""
     limits = problem.limits
 
     def resimulated(solution: Solution) -> JudgedMotion:
         return by_cvodes(problem, solution.coefficients)
 
-    peaks = true_peaks(limits, least, resimulated)
-    return {
-        limit.name: peaks[limit.name]
-        for limit in limits
-        if limit.name in peaks
-        and has_a_plan(
-            _widened(problem, limit, peaks[limit.name]),
-            least[limit.name].coefficients,
-            solver,
-        )
-    }
+    offers = dict[str, Offer]()
+    for name, offer in true_peaks(limits, least, resimulated).items():
+        (limit,) = (limit for limit in limits if limit.name == name)
+        widened = _widened(problem, limit, offer.peak)
+        certified = certified_plan(widened, least[name].coefficients, solver)
+        if certified is not None:
+            offers[name] = Offer(offer.peak, certified.figures.candidate)
+    return offers
 
 
 def _widened(problem: Program, limit: Limit, peak: float) -> Program:
@@ -77,21 +93,27 @@ def _widened(problem: Program, limit: Limit, peak: float) -> Program:
     return problem.asking(limits=replaced)
 
 
-def has_a_plan(problem: Program, start: Array, solver: Solver, most_refined: int = 2) -> bool:
-    """Return whether a plan is found from one start, and CVODES confirms it.
+def has_a_plan(problem: Program, start: Array, solver: Solver) -> bool:
+    """Return whether a plan is found from one start, and CVODES confirms it."""
+    return certified_plan(problem, start, solver) is not None
+
+
+def certified_plan(
+    problem: Program, start: Array, solver: Solver, most_refined: int = 2
+) -> Certified | None:
+    """Return what is found from one start, if CVODES confirms it; None otherwise.
 
     It may take so many times the steps: where a remedy needs finer ones, it is at its own edge, and
     every doubling takes as long as all before.
     """
     (solution,) = solver.solve([problem], [start])
     if not solution.status.solved:
-        return False
+        return None
     steps = min(most_refined * problem.steps, MOST_SOLVER_STEPS)
     try:
-        certify_one(problem, solution, solver, most_steps=steps)
+        return certify_one(problem, solution, solver, most_steps=steps)
     except SolverFailedError:
-        return False
-    return True
+        return None
 
 
 class Attempt(Protocol):
@@ -115,7 +137,7 @@ def unmet(
     task: PointToPoint,
     limits: Sequence[Limit],
     runs: Sequence[Attempt],
-    least: Mapping[str, float],
+    least: Mapping[str, Offer],
     *,
     motion: str,
     remedy: str,
@@ -141,15 +163,15 @@ def unmet(
     )
 
 
-def _offers(task: PointToPoint, limits: Sequence[Limit], least: Mapping[str, float]) -> str:
+def _offers(task: PointToPoint, limits: Sequence[Limit], least: Mapping[str, Offer]) -> str:
     """Least peaks that a limit does not keep, as limits that would do.
 
     Of an uncertain task they may: its scenarios keep them, and nothing between these was looked at.
     """
     remedies = [
-        _offer(task, limit, least[limit.name] * _ROOM)
+        _offer(task, limit, least[limit.name])
         for limit in limits
-        if limit.name in least and not limit.keeps(least[limit.name], at_rest=still_of(task))
+        if limit.name in least and not limit.keeps(least[limit.name].peak, at_rest=still_of(task))
     ]
     if not remedies:
         return ""
@@ -157,10 +179,18 @@ def _offers(task: PointToPoint, limits: Sequence[Limit], least: Mapping[str, flo
     return f"{how} with all else unchanged: {' or '.join(remedies)}"
 
 
-def _offer(task: PointToPoint, limit: Limit, peak: float) -> str:
-    """A limit that would do; of a residual limit that follows from a band the band."""
+def _offer(task: PointToPoint, limit: Limit, offer: Offer) -> str:
+    """A limit that would do; of a residual limit that follows from a band the band.
+
+    Of several joints those are named whose limits have to be wider.
+    """
+    peak = offer.peak * _ROOM
     if limit.name == RESIDUAL and band_words(task, limit.size):
         return f"band {1e3 * task.margin * peak:.4g} mm"
+    joints = [] if offer.motion is None else peaks_beyond(limit, offer.motion)
+    if joints:
+        wider = " and ".join(joint.times(_ROOM) for joint in joints)
+        return f"{limit.label} limit {wider}"
     return f"{limit.label} limit {limit.describe(peak)}"
 
 
@@ -204,16 +234,17 @@ def true_peaks(
     limits: Sequence[Limit],
     least: Mapping[str, AnyAttempt],
     resimulated: Callable[[AnyAttempt], JudgedMotion],
-) -> dict[str, float]:
+) -> dict[str, Offer]:
     """The least peaks as they are between the nodes as well, by what simulates a run's motion."""
 
-    def peak_of(limit: Limit, attempt: AnyAttempt) -> float:
+    def offer_of(limit: Limit, attempt: AnyAttempt) -> Offer:
         at_nodes = attempt.peaks[limit.name]
         try:
-            return max(at_nodes, limit.peak_of(resimulated(attempt).figures))
+            motion = resimulated(attempt)
+            return Offer(max(at_nodes, limit.peak_of(motion.figures)), motion)
         except SolverFailedError:
-            return at_nodes
+            return Offer(at_nodes)
 
     return {
-        limit.name: peak_of(limit, least[limit.name]) for limit in limits if limit.name in least
+        limit.name: offer_of(limit, least[limit.name]) for limit in limits if limit.name in least
     }

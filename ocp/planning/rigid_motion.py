@@ -178,18 +178,25 @@ class _Ramp(NamedTuple):
 
 
 def rigid_duration(task: PointToPoint) -> float:
-    """The least time of rigid joints within the limits of speed, acceleration and jerk [s].
+    """Return the least time of rigid joints within the limits of speed, acceleration and jerk [s].
 
-    That of the joint which takes longest by itself, from its first angle to its last; 0 where
-    nothing limits one. No motion within the limits is shorter.
+    No motion within the limits is shorter; it is 0 if nothing limits a joint.
     """
-    least = 0.0
+    return max(rigid_durations(task))
+
+
+def rigid_durations(task: PointToPoint) -> list[float]:
+    """Return the least time of each rigid joint by itself, from its first angle to its last [s].
+
+    It is 0 if nothing limits the joint.
+    """
+    durations = list[float]()
     for distance, bounds in zip(_distances(task), _bounds_of_joints(task)):
         try:
-            least = max(least, rigid_motion(distance, bounds).duration)
+            durations.append(rigid_motion(distance, bounds).duration)
         except ValueError:  # nothing limits this joint
-            continue
-    return least
+            durations.append(0.0)
+    return durations
 
 
 def declared_bounds(task: PointToPoint) -> RigidBounds:

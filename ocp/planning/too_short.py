@@ -6,16 +6,15 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError
-from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED, Limit, Shares
+from quietarm.ocp.joint_words import above_words, beyond, joint_peaks
+from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.ocp.planning.certify import OVERRUN
-from quietarm.ocp.planning.rigid_motion import rigid_duration
+from quietarm.ocp.planning.rigid_motion import rigid_duration, rigid_durations
 from quietarm.ocp.planning.rigid_pass import least_duration, values_at_rest
 from quietarm.ocp.task import PointToPoint
 
-Array = NDArray[np.float64]
 _OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", TORQUE_SPEED)
 _NO_MOVE = 1e3
 """So many times longer is no other duration of the same move: a unit was mistaken."""
@@ -43,21 +42,32 @@ def refuse_too_short(task: PointToPoint, at_rest: bool = False) -> None:
     if not task.limits:
         return
     refuse_to_hold(task)
-    by_joints = rigid_duration(task)
+    of_joints = rigid_durations(task)
+    by_joints = max(of_joints)
     by_plant = _SURE * least_duration(task, at_rest)
     if (1 + OVERRUN) * task.duration >= by_joints and task.duration >= by_plant:
         return
     of_a_joint = [limit for limit in task.limits if limit.name in _OF_A_RIGID_JOINT]
-    limits = of_a_joint if by_joints >= by_plant else task.limits
+    slowest = "joint"
+    limits = task.limits
+    if by_joints >= by_plant:
+        limits = of_a_joint
+        slowest = _named(task, of_joints.index(by_joints))
     names = ", ".join(limit.label for limit in limits)
     needed = _needed(task, at_rest) if len(task.limits) == 1 else ""
     least = max(by_joints, by_plant)
     unit = "; were other units meant?" if least > _NO_MOVE * task.duration else ""
     raise InfeasibleTaskError(
         f"{task.duration:g} s is too short: within the limits of {names} even a rigid "
-        f"joint takes {least:.4g} s{needed}; give a longer duration or wider "
+        f"{slowest} takes {least:.4g} s{needed}; give a longer duration or wider "
         f"limits{unit}"
     )
+
+
+def _named(task: PointToPoint, joint: int) -> str:
+    """Return the name of one of several joints; of a single one that it is a joint."""
+    names = task.plant.joint_names
+    return names[joint] if len(names) > 1 else "joint"
 
 
 def _needed(task: PointToPoint, at_rest: bool, rounds: int = 12) -> str:
@@ -98,18 +108,10 @@ def refuse_to_hold(task: PointToPoint) -> None:
         peaks = limit.peak(values.min(axis=0, initial=0.0), values.max(axis=0, initial=0.0))
         for place, peak, rows in zip(("start", "target"), peaks.tolist(), values.T):
             if not limit.keeps(peak, OVERRUN):
+                by_joint = joint_peaks(limit, task.plant, np.column_stack([rows, rows]))
+                passed = above_words(beyond(by_joint, OVERRUN))
+                of_one = f"{limit.describe(peak)}, above its limit of {limit.bounds}"
                 raise InfeasibleTaskError(
                     f"to stand still at its {place} the machine takes {limit.label} "
-                    f"{_passed(limit, peak, rows)}; give a wider limit or another {place}"
+                    f"{passed or of_one}; give a wider limit or another {place}"
                 )
-
-
-def _passed(limit: Limit, peak: float, rows: Array) -> str:
-    """Words on a value that passes its limit; of limits by joint on the joint that does."""
-    if not isinstance(limit.quantity.values, Shares):
-        return f"{limit.describe(peak)}, above the limit of {limit.bounds}"
-    row = int(np.abs(rows).argmax())
-    bound = limit.quantity.values.bounds[row]
-    value = bound.value(float(rows[row]))
-    value = abs(value) if bound.lower == -bound.upper else value
-    return f"{value:.4g} {bound.unit} at {bound.name}, above its limit of {bound.text}"

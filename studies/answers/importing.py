@@ -12,10 +12,18 @@ from numpy.typing import NDArray
 from quietarm.metaheuristics import MoveFunction
 from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.evaluation.stated_figures import agrees, always_agrees_within
-from quietarm.ocp import Front, JointProfile, PointToPoint, SolverFailedError, TermProfile
+from quietarm.ocp import (
+    Front,
+    JointProfile,
+    JudgedMotion,
+    PointToPoint,
+    SolverFailedError,
+    TermProfile,
+)
 from quietarm.ocp.checks import whole, with_article
 from quietarm.ocp.figures import FIGURES
 from quietarm.ocp.front.points import refuse_beyond_box
+from quietarm.ocp.joint_words import passed_words
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.planning.plan import evaluate_coefficients
 from quietarm.ocp.rest import rest_of
@@ -89,7 +97,7 @@ def _evaluated(
     usable = np.flatnonzero(~failed & ~broken)
     near = usable[_not_beaten(objectives[usable], task)]
     if not near.size:
-        raise SolverFailedError(_why_none(rows, failed, violations, task))
+        raise SolverFailedError(_why_none(rows, failed, violations, task, profile))
     front = Front.from_coefficients(
         task, rows[near], method=file.stem, profile=profile, bound=bound,
         settings={"imported": file.name}, evaluations=evaluations or len(rows),
@@ -120,7 +128,13 @@ def _checked(
         raise ValueError(f"motion {number}: {error}") from None
 
 
-def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: PointToPoint) -> str:
+def _why_none(
+    rows: Array,
+    failed: NDArray[np.bool_],
+    violations: Array,
+    task: PointToPoint,
+    profile: JointProfile,
+) -> str:
     none = f"no motion of {len(rows)} can be used: "
     if failed.all():
         return (
@@ -130,10 +144,10 @@ def _why_none(rows: Array, failed: NDArray[np.bool_], violations: Array, task: P
     nearest = violations[~failed].max(axis=1).argmin()
     passed = violations[~failed][nearest]
     limit = task.limits[int(passed.argmax())]
-    reached = limit.describe((1 + passed.max()) * limit.size)
+    motion = JudgedMotion.of_profile(task, profile, rows[~failed][nearest])
     return (
-        f"{none}the {limit.label} of the one that keeps the limits best is {reached}, above "
-        f"{limit.bounds}; widen that limit, or give a longer duration"
+        f"{none}the {limit.label} of the one that keeps the limits best is "
+        f"{passed_words(limit, motion)}; widen that limit, or give a longer duration"
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from quietarm.models import JointMotion
 from quietarm.ocp import JudgedMotion, Plan, PointToPoint, evaluate_coefficients, shaped_cycloid
 from quietarm.ocp.checks import install, several, takes, unknown
+from quietarm.ocp.joint_words import broken_limits
 from quietarm.ocp.limits import Limit, Shares
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.rigid_motion import RigidBounds
@@ -166,8 +167,7 @@ def _keeps_limits(moved: Plan | JudgedMotion) -> bool:
 def _exceeded(moved: Plan | JudgedMotion) -> list[str]:
     """Labels of the limits that a motion passes."""
     motion = moved if isinstance(moved, JudgedMotion) else moved.candidate
-    names = motion.figures.exceeded(motion.task.limits, OVERRUN)
-    return [limit.label for limit in motion.task.limits if limit.name in names]
+    return broken_limits(motion, motion.task.limits, OVERRUN)
 
 
 def _family(

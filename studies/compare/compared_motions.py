@@ -19,6 +19,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.checks import takes
 from quietarm.ocp.figures import rms
+from quietarm.ocp.joint_words import broken_limits
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.robustness import worst_case, worst_of
 from quietarm.ocp.task import MARGIN
@@ -105,12 +106,11 @@ def judge_motion(
     candidate = moved if isinstance(moved, JudgedMotion) else moved.candidate
     task = replace(task, duration=candidate.task.duration)
     nominal = JudgedMotion(task.certain, candidate.path)
-    exceeded = nominal.motion.exceeded(task.limits, OVERRUN)
     judged = ComparedMotion(
         name,
         nominal.motion,
         float(task.residual_window),
-        exceeded=tuple(limit.label for limit in task.limits if limit.name in exceeded),
+        exceeded=tuple(broken_limits(nominal, task.limits, OVERRUN)),
         meaning=meaning_of(moved),
         duration=task.duration,
         rms_torque=rms("torque")(nominal),

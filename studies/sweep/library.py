@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
 from quietarm.ocp import InfeasibleTaskError, Plan, PointToPoint, evaluate_coefficients
+from quietarm.ocp.joint_words import broken_limits
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.studies.sweep.between import Between, assess
 from quietarm.studies.sweep.cell_interpolation import Interpolation
@@ -154,7 +155,6 @@ def plan_from(
     library = dataset if isinstance(dataset, MoveLibrary) else MoveLibrary(dataset)
     plan = library.plan(**at)
     between = library.between()
-    exceeded = plan.motion.exceeded(plan.task.limits, OVERRUN)
-    broken = " and ".join(limit.label for limit in plan.task.limits if limit.name in exceeded)
+    broken = " and ".join(broken_limits(plan.candidate, plan.task.limits, OVERRUN))
     words = f"between the cells the move breaks its limit of {broken}; {between.remedy}"
     return plan, between, InfeasibleTaskError(words) if broken else None

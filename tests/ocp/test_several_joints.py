@@ -4,6 +4,7 @@ The independent figures are by SciPy's DOP853 along the planned motion, and by t
 for the absolute power of every joint.
 """
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from several_joints import Gantry, TwoLinks
 
 import quietarm as qa
 from quietarm.ocp import PositivePower
+from quietarm.ocp.joint_words import broken_limits, passed_words, peak_words
 
 LINKS = qa.PointToPoint(TwoLinks(), target=1.0, duration=0.6)
 GANTRY = qa.PointToPoint(Gantry(), target=0.5, duration=0.7)
@@ -154,6 +156,41 @@ def test_a_plan_with_limits_by_joint_loads_to_an_equal_value(tmp_path):
     again = qa.Plan.load(tmp_path / "plan.json")
     assert again == plan
     assert (again.task.torque_limit, hash(again.task)) == ({"joint_1": 400.0}, hash(task))
+
+
+def test_a_refusal_names_the_joint_that_takes_too_long():
+    task = replace(GANTRY, speed_limit={"joint_1": 9.0, "joint_2": 0.1})
+    with pytest.raises(qa.InfeasibleTaskError, match="even a rigid joint_2 takes 3 s"):
+        qa.plan_move(task, qa.CycloidPolynomial(2), starts=1)  # 0.3 m at 0.1 m/s
+
+
+@pytest.mark.parametrize("limit", [6.0, {"elbow": 6.0, "shoulder": 90.0}])
+def test_a_limit_that_is_passed_is_told_with_its_joint(limit):
+    """Peaks of the plain cycloid by the samples of its trajectory."""
+    motion = qa.evaluate_coefficients(replace(LINKS, torque_limit=limit), []).candidate
+    shoulder, elbow = (float(np.abs(row).max()) for row in motion.moving.torques)
+    assert 6.0 < elbow < shoulder < 90.0
+    (asked,) = motion.task.limits
+    passed = {"elbow": elbow}
+    if limit == 6.0:
+        passed = {"shoulder": shoulder, "elbow": elbow}
+    words = [f"{peak:.4g} N m at {joint}" for joint, peak in passed.items()]
+    assert peak_words(asked, motion) == " and ".join(words)
+    assert passed_words(asked, motion).startswith(f"{words[0]}, above its limit of 6 N m")
+    assert broken_limits(motion, [asked], 1e-3) == [f"torque at {', '.join(passed)}"]
+
+
+@pytest.mark.slow
+def test_a_remedy_names_the_joint_whose_limit_has_to_be_wider():
+    profile = qa.CycloidPolynomial(4)
+    limits = {"joint_1": 2e3, "joint_2": 20.0}
+    task = replace(GANTRY, torque_limit=limits)
+    with pytest.raises(qa.InfeasibleTaskError) as refused:
+        qa.plan_move(task, profile, starts=1)
+    (offered,) = re.findall(r"force limit ([\d.]+) N at joint_2$", str(refused.value))
+    wider = limits | {"joint_2": float(offered)}
+    plan = qa.plan_move(replace(task, torque_limit=wider), profile, starts=1)
+    assert plan.motion.peak_torque < 2e3
 
 
 @pytest.mark.parametrize(

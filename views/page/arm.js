@@ -17,11 +17,12 @@ const drawScene = () => {
   drawLines(structure);
 };
 // What the lines of the picture are.
-const drawLines = ({ in_space: inSpace, room }) => {
+const drawLines = ({ in_space: inSpace, room, on_support: onSupport }) => {
   const key = byId("lines");
   key.replaceChildren();
   const line = (label, look) => keyEntry(key, label, (picture) => draw(picture, "path", { d: "M0 7H22", ...look }));
   if (inSpace) line("robot", { stroke: "var(--metal)", "stroke-width": 7 });
+  if (onSupport) line("support", { stroke: "var(--edge)", "stroke-width": 5 });
   line(inSpace ? "what gives, this motion" : "this motion", { stroke: "var(--this)", "stroke-width": 5 });
   line("plain cycloid", { stroke: "var(--cycloid)", "stroke-width": 5, "stroke-opacity": 0.6 });
   line("at the end", { stroke: "var(--soft)", "stroke-width": 1.2, "stroke-dasharray": "5 3" });

@@ -80,9 +80,9 @@ const drawAll = () => {
   showMotion();
 };
 const invitation = (move, several) => {
-  if (!several) return "A motion of something that bends, over the plain cycloid of the same move.";
-  if (!move.joined) return "Each point is a way to make this move. Drag the ring from one to the next.";
-  return "Each point is a way to make this move. Drag the ring: left is stiller, right takes less energy.";
+  if (!several) return unbroken(`${move.title}; the plain cycloid of the same move is drawn behind it.`);
+  const ways = unbroken(`${move.title}. Each point is a way to make this move.`);
+  return move.joined ? `${ways} Drag the ring: left is stiller, right takes less energy.` : `${ways} Drag the ring from one to the next.`;
 };
 // Motions with names, of which some may lie on each other.
 const beginNames = (points) => {

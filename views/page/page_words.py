@@ -12,6 +12,8 @@ import numpy as np
 from quietarm.models import Plant
 from quietarm.ocp import Plan, PointToPoint
 from quietarm.ocp.figures import ENERGY, Figure, figures_in
+from quietarm.ocp.joint_words import peaks_beyond
+from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import PAGE, QUANTITIES, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.rest import is_at_rest
@@ -174,13 +176,23 @@ def _against_cycloid(move: Move, choice: Choice) -> str:
 
 def _broken_by_cycloid(move: Move, task: PointToPoint) -> str:
     """The limits of a task that the plain cycloid breaks, in a sentence."""
-    peaks = {limit: limit.peak_of(move.cycloid.motion) for limit in task.limits}
+    cycloid = move.cycloid
+    peaks = {limit: limit.peak_of(cycloid.motion) for limit in task.limits}
     words = [
-        _beyond(limit, peak, task.plant.tip_unit)
+        _beyond_of_joints(limit, cycloid.candidate) or _beyond(limit, peak, task.plant.tip_unit)
         for limit, peak in peaks.items()
         if not limit.keeps(peak, OVERRUN)
     ]
     return f" The cycloid would reach {' and '.join(words)}." if words else ""
+
+
+def _beyond_of_joints(limit: Limit, cycloid: JudgedMotion) -> str:
+    """Peaks of joints beyond their limits: "40.5 N m of torque at elbow_joint, beyond ..."."""
+    return " and ".join(
+        f"{_digits(peak.value)} {peak.bounds.unit} of {limit.label} at {peak.bounds.name}, beyond "
+        f"the limit of {peak.bounds.text}"
+        for peak in peaks_beyond(limit, cycloid, OVERRUN)
+    )
 
 
 def _beyond(limit: Limit, peak: float, tip_unit: str) -> str:

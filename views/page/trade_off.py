@@ -297,6 +297,7 @@ def _structure(move: Move, times: Array, scale: float | None, tolerance: float) 
         "scale": first.scale_words.replace(" x ", " \u00d7 "),
         "in_space": in_space,
         "room": _room(Room.of(structures)) if in_space else None,
+        "on_support": in_space and first.on_support,
         "parts": [_part(part) for part in first.bent],
         "trails": len(first.paths),
         "mean": shapes.mean.round(6).tolist(),

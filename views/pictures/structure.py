@@ -84,6 +84,12 @@ class Structure:
         return "to scale" if self.scale == 1 else f"deflection x {self.scale:g}"
 
     @property
+    def on_support(self) -> bool:
+        """Return whether a support is seen under the structure, down to the floor."""
+        posts = [part for part in self.bent if part.colour == FAINT]
+        return any(np.ptp(part.points, axis=1).max() > 2 * part.radius for part in posts)
+
+    @property
     def largest_share(self) -> float:
         """The largest displacement of a tip as a share of the structure's size."""
         still = replace(self, times=self.times[:1])

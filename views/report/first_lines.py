@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from quietarm.ocp import CycloidPolynomial, Floor, JudgedMotion, Plan, SolverFailedError
 from quietarm.ocp.errors import SolveStatus
+from quietarm.ocp.joint_words import broken_limits
 from quietarm.ocp.planning.as_timed import TimedAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.rest import is_at_rest
@@ -81,7 +82,7 @@ def _end(motion: JudgedMotion, residual: float) -> str:
 
 def _broken(motion: JudgedMotion) -> str:
     """Return the limits that a motion breaks, in words; nothing where it keeps all."""
-    broken = motion.figures.exceeded(motion.task.limits, OVERRUN)
+    broken = broken_limits(motion, motion.task.limits, OVERRUN)
     return f", beyond its limit of {' and '.join(broken)}" if broken else ""
 
 

@@ -20,7 +20,7 @@ from quietarm.ocp import (
 )
 from quietarm.ocp.errors import SolveStatus
 from quietarm.ocp.figures import ENERGY, Figure, Figures, figures_in
-from quietarm.ocp.joint_words import figure_words
+from quietarm.ocp.joint_words import figure_words, peak_words
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.limits import REPORT, RESIDUAL, Limit
 from quietarm.ocp.planning.certify import OVERRUN
@@ -31,7 +31,7 @@ from quietarm.ocp.record import AGREEMENT
 from quietarm.ocp.rest import is_at_rest, rest_of
 from quietarm.ocp.robustness import OF_MODES
 from quietarm.views.report.drive_rows import cycle_rows, drive_rows
-from quietarm.views.report.robot_rows import way_rows
+from quietarm.views.report.robot_rows import free_joints_words, way_rows
 from quietarm.views.report.words import (
     move_of,
     moved,
@@ -266,8 +266,8 @@ def _move_rows(task: PointToPoint, motion: Figures, residual_limit: float = 0.0)
     limits = [f"residual {_tip(task, residual_limit)}"] if residual_limit > 0 else []
     for limit in task.limits:
         peak = limit.peak_of(motion)
-        broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {limit.describe(peak)})"
-        limits.append(f"{limit}{broken}")
+        broken = "" if limit.keeps(peak, OVERRUN) else f" (broken: {_reached(limit, motion)})"
+        limits.append(f"{limit}{_without(limit, task.plant)}{broken}")
     return [
         ("move", f"{moved(task)}, {move_of(task)}"),
         *_path_rows(task),
@@ -275,6 +275,19 @@ def _move_rows(task: PointToPoint, motion: Figures, residual_limit: float = 0.0)
         *([("on arrival", state_words(task.final, tip_unit))] if task.final else []),
         *([("limits", ", ".join(limits))] if limits else []),
     ]
+
+
+def _reached(limit: Limit, motion: Figures) -> str:
+    """The peak that passes a limit, in words; of several joints with their names."""
+    if motion.candidate is None:
+        return limit.describe(limit.peak_of(motion))
+    return peak_words(limit, motion.candidate, OVERRUN)
+
+
+def _without(limit: Limit, plant: Plant) -> str:
+    """The joints that a limit of some joints leaves free, in words."""
+    limited = [bounds.name for bounds in limit.bounds_of_joints(plant)]
+    return free_joints_words(plant.joint_names, limited)
 
 
 def _figure_rows(

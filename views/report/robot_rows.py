@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import tau
 
@@ -191,8 +191,15 @@ def _limit_rows(robot: Robot) -> list[Row]:
     for quantity, limits in robot.limits.items():
         kind = kind_of_joints([robot.kind_of(name) for name in limits])
         label = words_of(quantity).within("{} limit").of(kind)
-        rows.append((label, _with_units(robot, limits, QUANTITIES[quantity].unit)))
+        free = free_joints_words(robot.joints, limits)
+        rows.append((label, f"{_with_units(robot, limits, QUANTITIES[quantity].unit)}{free}"))
     return rows
+
+
+def free_joints_words(joints: Sequence[str], limited: Collection[str]) -> str:
+    """Name the joints that limits of some joints leave free; nothing if they leave none."""
+    free = [joint for joint in joints if limited and joint not in limited]
+    return f" (none for {', '.join(free)})" if free else ""
 
 
 def _with_units(robot: Robot, values: Mapping[str, float], unit: Unit) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import Array
+from quietarm.models.number_checks import quoted
 from quietarm.models.robot.text_files import read_text, read_yaml
 
 _MESSAGES = (".yaml", ".yml", ".json", ".moveit")
@@ -229,6 +231,40 @@ def _is_in_space(trajectory: Mapping[str, Any]) -> bool:
     return isinstance(first, Mapping) and "transforms" in first
 
 
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*")
+_DECIMAL_POINT = re.compile(r"\s*[+-]?\d*\.\d+(?:[eE][+-]?\d+)?\s*")
+
+
+def _separator(lines: list[str]) -> str | None:
+    """What separates the cells of a table; None of white space, also between decimal commas."""
+    mark = next((mark for mark in ";\t," if mark in lines[0]), None)
+    cells = lines[-1].split()
+    spaced = len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells)
+    return None if mark == "," and spaced else mark
+
+
+def _with_points(rows: list[list[str]], path: str) -> list[list[str]]:
+    """Rows whose numbers have decimal points, of cells that commas do not separate.
+
+    Such cells may have decimal commas, but then all of a table do: 1,250 beside 0.5 may be a
+    thousand and more.
+    """
+    cells = [cell for row in rows for cell in row]
+    by_comma = next((cell for cell in cells if _DECIMAL_COMMA.fullmatch(cell)), None)
+    if by_comma is None:
+        return rows
+    by_point = next((cell for cell in cells if _DECIMAL_POINT.fullmatch(cell)), None)
+    if by_point is not None:
+        raise ValueError(
+            f"path {path} has numbers with decimal commas and with decimal points, such as "
+            f"{quoted(by_comma)} and {quoted(by_point)}; give all of them with points"
+        )
+    return [
+        [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in row]
+        for row in rows
+    ]
+
+
 def _table_of(path: str | Path) -> JointTable:
     """Names, where they are above the columns, and positions of a csv; its times."""
     text = read_text(path, "path")
@@ -237,13 +273,15 @@ def _table_of(path: str | Path) -> JointTable:
     ]
     if not lines:
         raise ValueError(f"path {path} is empty; give a row for each waypoint")
-    mark = next((mark for mark in ";\t," if mark in lines[0]), None)
+    mark = _separator(lines)
     rows = (
         [line.split() for line in lines]
         if mark is None
         else list(csv.reader(io.StringIO("\n".join(lines)), delimiter=mark))
     )
     names = tuple[str, ...]()
+    if mark != ",":
+        rows = _with_points(rows, str(path))
     try:
         [float(cell) for cell in rows[0]]
     except ValueError:
@@ -252,7 +290,7 @@ def _table_of(path: str | Path) -> JointTable:
     if len({len(row) for row in rows}) != 1:
         raise ValueError(
             f"path {path} has rows of different lengths, or none; give a number for each joint in "
-            "each"
+            "each, and semicolons between numbers with decimal commas"
         )
     try:
         table = np.array([[float(cell) for cell in row] for row in rows])
@@ -261,6 +299,11 @@ def _table_of(path: str | Path) -> JointTable:
             f"path {path} has a row that is no row of numbers ({error}); give a number for each "
             "joint"
         ) from None
+    if names and len(names) != table.shape[1]:
+        raise ValueError(
+            f"path {path} names {len(names)} columns and has {table.shape[1]} numbers in a row; "
+            "give a number for each name, and semicolons between numbers with decimal commas"
+        )
     times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
     at = [number for number, is_time in enumerate(times) if is_time]
     kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)

@@ -104,8 +104,12 @@ def test_a_csv_with_names_gives_them(tmp_path):
 def test_a_csv_without_names_is_in_the_order_of_the_robots_joints(tmp_path, mark):
     file = tmp_path / "waypoints.csv"
     rows = [[0.1, 0.2], [0.4, 0.3], [0.9, 0.2]]
-    file.write_text("\n".join(mark.join(map(str, row)) for row in rows))
+    text = "\n".join(mark.join(map(str, row)) for row in rows)
+    file.write_text(text)
     assert qa.GeometricPath.load(file)(1.0) == pytest.approx([0.9, 0.2])
+    if mark != ",":  # as spreadsheets of many countries write it
+        file.write_text(text.replace(".", ","), encoding="utf-8-sig")
+        assert qa.GeometricPath.load(file)(1.0) == pytest.approx([0.9, 0.2])
 
 
 @pytest.mark.parametrize("wrapped", [False, True])
@@ -131,6 +135,8 @@ def test_a_joint_trajectory_gives_its_positions_and_no_times(tmp_path, wrapped):
     ("a.csv", "", "is empty; give a row for each waypoint"),
     ("a.csv", "a,b\n1,x\n2,3\n", "a row that is no row of numbers"),
     ("a.csv", "1,2\n3\n", "rows of different lengths"),
+    ("a.csv", "a,b\n0,5,1,2\n", "names 2 columns and has 4 numbers in a row"),
+    ("a.csv", "1,5;2\n3.5;2\n", "commas and with decimal points, such as '1,5' and '3.5'"),
     ("a.csv", "1,2\n1,2\n", "a.csv: the path has a length of 0"),
     ("a.yaml", "points: 3\n", "is no JointTrajectory"),
     ("a.yaml", "joint_names: [a]\npoints: [{x: 1}]\n", "a point without positions"),

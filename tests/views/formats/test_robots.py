@@ -165,7 +165,8 @@ def test_a_film_of_a_robot_moves_and_has_the_cycloid_beside_it(tmp_path):
     (legend,) = figures[-1].legends
     words = [text.get_text() for text in legend.get_texts()]
     assert words[:2] == ["plain cycloid", "this plan"]
-    assert words[2:] == ["without bending", "way of the tip", "squares of 20 cm"]
+    assert words[2:4] == ["without bending", "way of the tip"]
+    assert words[4:] == ["robot", "support", "squares of 20 cm"]
     assert [structure.line.label for structure in film.structures] == ["plain cycloid", "this plan"]
     with Image.open(tmp_path / "film.gif") as image:
         assert image.n_frames == 7

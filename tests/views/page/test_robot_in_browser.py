@@ -103,10 +103,14 @@ def test_every_line_has_a_legend_and_all_is_in_the_picture_from_all_sides(opened
     page = opened(**options)
     still(page, 0.4)
     words = page.inner_text("#lines")
+    invitation = page.inner_text("#invitation").replace("\u00a0", " ")
+    assert page.evaluate("state.move.title") in invitation
     for line in ("robot", "what gives", "plain cycloid", "at the end", "way of the tip", "squares"):
         assert line in words
     assert page.evaluate("document.documentElement.scrollWidth") == options["viewport"]["width"]
     assert page.evaluate(CROSSED) == []
+    page.evaluate("drawLines({ ...state.move.structure, on_support: true })")
+    assert "support" in page.inner_text("#lines")
     for azimuth in (0.0, 2.0, 4.0):
         for elevation in (0.05, 1.5):
             page.evaluate(

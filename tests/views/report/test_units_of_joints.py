@@ -46,10 +46,11 @@ def plan_of(tmp_path_factory):
 def test_rows_of_a_gantry_are_in_metres_and_newtons(plan_of):
     plan = plan_of(GANTRY)
     rows = dict(plan_rows(plan))
-    assert rows["peak force"] == f"{plan.motion.peak_torque:.4g} N"
-    assert rows["peak speed"] == f"{plan.motion.peak_speed:.4g} m/s"
+    assert rows["peak force"] == f"{plan.motion.peak_torque:.4g} N (x)"  # the lower carriage
+    assert rows["peak speed"] == f"{plan.motion.peak_speed:.4g} m/s (radial-axis)"  # goes farther
     assert rows["peak acceleration"].startswith(f"{plan.motion.peak_acceleration:.4g} m/s^2")
     assert "force x 900 N; radial-axis 500 N, speed radial-axis 2 m/s" in rows["limits"]
+    assert rows["limits"].endswith("speed radial-axis 2 m/s (none for x)")
     html = plan._repr_html_()
     assert "force x 900 N; radial-axis 500 N" in html
     assert "peak force" in html
