@@ -6,18 +6,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import takes
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.shaper import shaped_cycloid
+from quietarm.ocp.simulation.evaluator import with_errors
 from quietarm.ocp.simulation.free_vibration import FreeVibration
 from quietarm.ocp.simulation.mesh import default_steps
 from quietarm.ocp.simulation.rollout import Simulation
 from quietarm.ocp.task import PointToPoint
-from quietarm.ocp.uncertainty import FREQUENCY, perturb_plant
+from quietarm.ocp.uncertainty import FREQUENCY
 
 Array = NDArray[np.float64]
 
@@ -101,6 +101,4 @@ class _PlantOff:
     @cached_property
     def _vibration(self) -> FreeVibration:
         """After arrival, with each of the errors."""
-        task = self._task
-        perturbed = perturb_plant(task.plant, {self._name: ca.DM(self._errors)})
-        return FreeVibration(perturbed, [task.target] * len(self._errors), task.residual_window)
+        return with_errors(self._task, [self._name], self._errors)

@@ -48,10 +48,8 @@ def _along_errors(
     report: Progress | None = None,
 ) -> Figures:
     """Figures at the nodes of the steps, an entry for each plant, of errors (plants, ranges)."""
-    faster = 1 + max(ranges.values())  # any of them may be a frequency
-    nominal_steps = default_steps(candidate.task.certain, least=1)
-    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * nominal_steps)))
     torque = QUANTITIES["torque"]
+    steps = _steps_for(candidate.task, ranges)
     evaluator = candidate.by_steps(steps, quantities=[torque], error_names=ranges)
     plants_a_call = 1000
     residuals = list[Array]()
@@ -72,6 +70,12 @@ def _along_errors(
             torque.peak: np.concatenate(peak_torques),
         }
     )
+
+
+def _steps_for(task: PointToPoint, ranges: Mapping[str, float]) -> int:
+    """Steps that resolve a move with errors in ranges, any of which may be of a frequency."""
+    faster = 1 + max(ranges.values(), default=0.0)
+    return max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task.certain, least=1))))
 
 
 def worst_of(candidate: JudgedMotion) -> JudgedMotion | None:
@@ -107,12 +111,11 @@ def worst_of_rows(task: PointToPoint, profile: JointProfile, rows: ArrayLike) ->
     ndarray, shape (motions,)
     """
     ranges = task.ranges
-    faster = 1 + max(ranges.values(), default=0.0)  # any of them may be a frequency
-    steps = max(ROLLOUT_STEPS, int(np.ceil(faster * default_steps(task.certain, least=1))))
+    steps = _steps_for(task, ranges)
     evaluator = Evaluator(task, profile, steps, quantities=[], error_names=tuple(ranges))
     shares = _grid(np.linspace(-1, 1, _ALONG_ROUGHLY[len(ranges)]), len(ranges))
     errors = shares * np.array(list(ranges.values()))
-    return evaluator(rows, errors).residual.max(axis=1)
+    return evaluator.residuals(rows, errors).max(axis=1)
 
 
 def peaks_between(
@@ -126,8 +129,11 @@ def peaks_between(
     if not ranges:
         return []
 
+    steps = _steps_for(candidate.task, ranges)
+    evaluator = candidate.by_steps(steps, quantities=[], error_names=ranges)
+
     def residuals(errors: Array) -> Array:
-        return _along_errors(candidate, ranges, errors).residual
+        return evaluator.residuals([candidate.coefficients], errors)[0]
 
     along = (_ALONG_ROUGHLY if roughly else _ALONG)[len(ranges)]
     return _peaks(residuals, candidate, ranges, along, most)

@@ -23,7 +23,12 @@ from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.planning.best_of_starts import best_of_starts, shortened
 from quietarm.ocp.planning.least_time import SplineFit, fit_spline, least_time, shaped_duration
 from quietarm.ocp.planning.plan import Plan
-from quietarm.ocp.planning.plan_along import excess_of, plan_along, refuse_far_beyond
+from quietarm.ocp.planning.plan_along import (
+    excess_of,
+    plan_along,
+    refuse_far_beyond,
+    worst_residual,
+)
 from quietarm.ocp.planning.remedies import has_a_plan, stated_limit
 from quietarm.ocp.planning.request import Request
 from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
@@ -86,9 +91,7 @@ def _plan_on_first_that_will_do(request: Request) -> Plan:
     # no motion was found, or the default residual limit was out of reach
     fit = _fit(request)
     on_spline = None if fit is None or not fit.keeps else _try_fit(request, fit)
-    if on_spline is not None and (
-        plan is None or _worst_residual(on_spline) < _worst_residual(plan)
-    ):
+    if on_spline is not None and (plan is None or worst_residual(on_spline) < worst_residual(plan)):
         return on_spline
     if plan is not None:
         return plan
@@ -213,11 +216,6 @@ def _try(request: Request) -> Plan | None:
         return plan_along(replace(request, quick=True))
     except SolverFailedError:
         return None
-
-
-def _worst_residual(plan: Plan) -> float:
-    """Return what a plan leaves in the worst case [m]."""
-    return plan.residual if plan.worst is None else plan.worst.residual
 
 
 def _state_terms(plan: Plan, settings: Mapping[str, Setting] | None = None) -> Plan:

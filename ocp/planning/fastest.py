@@ -10,13 +10,13 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from quietarm.ocp.checks import positive, takes
 from quietarm.ocp.errors import InfeasibleTaskError, SolverFailedError
 from quietarm.ocp.limits import QUANTITIES
-from quietarm.ocp.planning.best_of_starts import is_beyond
 from quietarm.ocp.planning.choose_profile import SIX
 from quietarm.ocp.planning.least_time import LeastTime, least_time
 from quietarm.ocp.planning.plan import Plan
@@ -32,13 +32,13 @@ from quietarm.ocp.planning.too_short import refuse_to_hold
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.profiles.shaped_cycloid import TOLERATED
 from quietarm.ocp.simulation.free_vibration import FreeVibration
+from quietarm.ocp.solvers.least_excess import least_excess
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.ocp.task import LEAST_DURATION, PointToPoint
 
 _GROWTH = 1.5
 """By which a duration along a given profile grows where it fails."""
-_BEYOND = "every motion found exceeds a limit by 5 % or more"
 _RIGID = "within its limits of speed, acceleration and jerk a joint takes longer"
 
 
@@ -184,7 +184,12 @@ def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
     """Say why the longest duration that failed is too short."""
     if least.too_short <= rigid_duration(task):
         return _RIGID
-    return f"every motion found exceeds a limit by {100 * max(least.excess, 1e-6):.1g} % or more"
+    return _beyond(least.excess)
+
+
+def _beyond(excess: float) -> str:
+    """Say by how much every motion found exceeds a limit."""
+    return f"every motion found exceeds a limit by {100 * max(excess, 1e-6):.1g} % or more"
 
 
 def _longest_first(failed: Mapping[float, str]) -> tuple[tuple[float, str], ...]:
@@ -229,10 +234,14 @@ def _narrow(tried: _Tried, tolerance: float, shares: tuple[float, ...] = (0.97, 
 class _Tried:
     """Durations that were tried for a request.
 
-    Each is tried by the solver alone. What stands in for the solver, and the search for a limit
-    that, if wider, would do, take many times as long: they are for the longest one that failed.
-    Where a stand-in succeeds, the solver alone says little, and all that follow are tried so.
+    Where linear programs about the best motion find no other within the limits, the solver is not
+    asked, which takes forty times as long to fail; nor else is what stands in for it, or the search
+    for a limit that, if wider, would do. All of these are for the longest duration that failed.
+    Where they succeed, less says little, and all that follow are tried so.
     """
+
+    unmet: ClassVar[float] = 1e-4
+    """Share of a limit that linear programs are sure of."""
 
     def __init__(self, request: Request) -> None:
         self.request = request
@@ -250,10 +259,11 @@ class _Tried:
         along = request.along(self.request.profile, guess)
         if self._thorough:
             self._explained.add(duration)
-        elif guess is not None and is_beyond(along.problem(), np.array(guess)):
-            # far out of reach a solver takes all its iterations to say so
-            self.failed[duration] = _BEYOND
-            return False
+        elif guess is not None:
+            excess = least_excess(along.problem(), np.array(guess))
+            if excess.holds and excess.share > self.unmet:
+                self.failed[duration] = _beyond(excess.share)
+                return False
         try:
             self.best = plan_along(along)
         except SolverFailedError as error:

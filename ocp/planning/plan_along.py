@@ -141,26 +141,35 @@ def _adapt_limit(request: Request) -> Plan:
     request = replace(request, quick=False)
     starts = request.guesses
     nominal, motions = _nominal_plan(request)
-    nominal_worst = np.inf
-    if nominal is not None and nominal.worst is not None:
-        nominal_worst = nominal.worst.residual
+    if nominal is not None:
         # of many random starts, as networks take them, those stand for the others that led there
         starts = [*motions, *starts[: max(request.starts, _NOMINAL_STARTS - len(motions))]]
-    most = max(nominal_worst, rest_of(request.task))
-    limit = min(request.residual_limit, most)
+
+    def within_nominal(limit: float) -> float:
+        """Return the limit, or the worst case of the nominal plant's plan where that is less."""
+        if nominal is None or not request.task.ranges:
+            return limit
+        if nominal.residual >= limit:  # in the scenarios alone, which is soon computed
+            return limit
+        return min(limit, max(worst_residual(nominal), rest_of(request.task)))
+
+    limit = within_nominal(request.residual_limit)
     try:
         plan = _hold(request.within(limit), starts, gives_up=True)
     except InfeasibleTaskError:
         least = _least_residual(request, starts)
-        limit = limit if least is None else min((1 + EXCESS) * least, most)
+        limit = limit if least is None else within_nominal((1 + EXCESS) * least)
         plan = _hold(request.within(limit), starts)
-    assert plan.worst is not None
     if plan.excess is None or plan.excess <= OVERRUN:
         return plan
-    if nominal is not None and plan.worst.residual > nominal_worst:
+    if nominal is not None and worst_residual(plan) > worst_residual(nominal):
         plan = nominal
-    assert plan.worst is not None
-    return plan.with_entries(residual_limit=plan.worst.residual)
+    return plan.with_entries(residual_limit=worst_residual(plan))
+
+
+def worst_residual(plan: Plan) -> float:
+    """Return what the plan of an uncertain task leaves in the worst case [m]."""
+    return plan.residual if plan.worst is None else plan.worst.residual
 
 
 def _nominal_plan(request: Request) -> tuple[Plan | None, list[Array]]:

@@ -200,6 +200,38 @@ class Evaluator:
             errors=None if errors is None else scenarios,
         )
 
+    @interruptible
+    @on_one_thread
+    def residuals(self, coefficients: ArrayLike, errors: ArrayLike) -> Array:
+        """Return what candidates of one task leave with errors of the plant [m].
+
+        It is the residual of an evaluation, without energy and quantities: a third of the time.
+
+        Parameters
+        ----------
+        coefficients : array_like, shape (candidates, profile.size)
+        errors : array_like, shape (scenarios, errors)
+
+        Returns
+        -------
+        ndarray, shape (candidates, scenarios)
+        """
+        (task,) = self.tasks
+        table = table_of(coefficients, self.simulation.profile.size)
+        scenarios = self._checked(errors)
+        count = len(scenarios)
+        COST.candidates += len(table) * count
+        function = _compiled_arrivals(self.simulation._replace(quantities=()))
+        inputs = (
+            np.repeat(table, count, axis=0),
+            np.repeat(self.rows, len(table) * count, axis=0),
+            np.tile(scenarios, (len(table), 1)),
+        )
+        (arrivals,) = function(inputs, copy_rows, self.threads)
+        vibration = with_errors(task, self.simulation.errors, scenarios)
+        missed = arrivals.reshape(len(table), count, -1) - self.wanted
+        return np.array([vibration.peak(states) for states in missed])
+
     def _checked(self, errors: ArrayLike) -> Array:
         """Errors of the plant, a row for each scenario."""
         table = numbers("errors", errors, "a row of numbers for each scenario")
@@ -263,14 +295,7 @@ class Evaluation:
         """One for each scenario."""
         assert self.errors is not None
         (task,) = self.evaluator.tasks
-        names = self.evaluator.simulation.errors
-        errors = dict(zip(names, map(ca.DM, self.errors.T)))
-        targets = [task.target] * len(self.errors)
-        return FreeVibration(
-            perturb_plant(task.plant, errors),
-            targets,
-            task.residual_window,
-        )
+        return with_errors(task, self.evaluator.simulation.errors, self.errors)
 
     @cached_property
     def sampled_residual(self) -> Array:
@@ -329,6 +354,12 @@ class Evaluation:
         return violations
 
 
+def with_errors(task: PointToPoint, names: Sequence[str], errors: Array) -> FreeVibration:
+    """Return the vibration after arrival with each row of errors of the plant, by their names."""
+    plant = perturb_plant(task.plant, dict(zip(names, map(ca.DM, errors.T))))
+    return FreeVibration(plant, [task.target] * len(errors), task.residual_window)
+
+
 def _ends(values: Array) -> Array:
     return np.stack([values.min(axis=-1), values.max(axis=-1)], axis=-1)
 
@@ -355,17 +386,45 @@ def _compiled_values(simulation: Simulation) -> RowFunction:
     )
 
 
+@lru_cache(maxsize=RECENT)
+def _compiled_arrivals(simulation: Simulation) -> RowFunction:
+    # one size where it takes long to build: a fifth of a second each for a robot
+    sizes = (1, 8, 100) if simulation.plant.steps_at_once == 1 else (8,)
+    return RowFunction(
+        partial(_build_arrivals, simulation), sizes, simulation.kept_as("states on arrival")
+    )
+
+
+def _build_arrivals(simulation: Simulation, rows: int) -> ca.Function:
+    """Build the function that gives the states on arrival of so many candidates."""
+    inputs, columns = _inputs_at_nodes(simulation, rows)
+    arrival = simulation.arrival(*columns, rows)
+    return ca.Function("arrival", inputs, [ca.densify(arrival)])
+
+
+def _inputs_at_nodes(
+    simulation: Simulation, rows: int
+) -> tuple[list[ca.MX], tuple[list[ca.MX], list[ca.MX], list[ca.MX]]]:
+    """Coefficients, rows of tasks and errors of so many candidates; their columns at all nodes.
+
+    The state before the move is there once a row.
+    """
+    counts = simulation.profile.size, 3 + 2 * simulation.plant.modes, len(simulation.errors)
+    inputs = [ca.MX.sym("x", rows, count) for count in counts]
+    nodes = NODES * len(simulation.mesh.lengths)
+    a, row, errors = (widen(matrix, nodes) for matrix in inputs)
+    initial = ca.horzsplit(inputs[1], 1)[3:]
+    return inputs, (a, [*row[:3], *initial], errors)
+
+
 def _build_values(simulation: Simulation, rows: int) -> ca.Function:
     """Build the function that gives the values of a number of candidates.
 
     (coefficients, rows of tasks, errors) -> energy, arrival, limited quantities; a row a candidate.
     """
     steps = len(simulation.mesh.lengths)
-    counts = simulation.profile.size, 3 + 2 * simulation.plant.modes, len(simulation.errors)
-    inputs = [ca.MX.sym("x", rows, count) for count in counts]
-    a, row, errors = (widen(matrix, NODES * steps) for matrix in inputs)
-    initial = ca.horzsplit(inputs[1], 1)[3:]
-    rollout = simulation.rollout(a, [*row[:3], *initial], errors, rows)
+    inputs, columns = _inputs_at_nodes(simulation, rows)
+    rollout = simulation.rollout(*columns, rows)
     limited = [x for quantity in simulation.quantities for x in rollout.values(quantity)]
     outputs = [[rollout.energy], [rollout.arrival], limited]
     options = {"cse": steps <= MOST_STEPS_OF_CSE}

@@ -154,11 +154,22 @@ class Simulation(NamedTuple):
             return [ca.DM(np.full((rows, nodes), value)) for value in values]
 
         by_node = [ca.DM(np.repeat(column[:, None], nodes, axis=1)) for column in errors.T]
-        plant = perturb_plant(self.plant, dict(zip(self.errors, by_node)))
-        joint, h = _at_nodes(self.profile, columns(coefficients), columns(row[:3]), self.mesh, rows)
+        at_nodes = [*columns(row[:3]), *row[3:]]
+        return np.array(self.arrival(columns(coefficients), at_nodes, by_node, rows))
+
+    def arrival(
+        self,
+        coefficients: Sequence[Expression],
+        row: Sequence[Expression],
+        errors: Sequence[Expression],
+        candidates: int,
+    ) -> Expression:
+        """The state on arrival alone of `rollout`, without torques: of symbols or of numbers."""
+        plant = perturb_plant(self.plant, dict(zip(self.errors, errors)))
+        joint, h = _at_nodes(self.profile, coefficients, row[:3], self.mesh, candidates)
         every_step = collocate(modal_system(plant, joint), h)
         *_, arrival = march(*every_step.transition(), h.shape, row[3:])
-        return np.array(arrival)
+        return arrival
 
 
 @lru_cache(maxsize=128)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from itertools import repeat
+from itertools import accumulate, repeat
 from typing import Any
 
 import casadi as ca
@@ -31,6 +31,8 @@ class RowFunction:
         Rows of a compiled call, increasing: to build one takes as long as hundreds of its calls.
     kept_as : sequence, optional
         All that the function follows from beside the number of rows, as of `Compiled`.
+    patience : int
+        Calls of the smallest block that stand in for a larger one before that is built.
     """
 
     def __init__(
@@ -38,20 +40,21 @@ class RowFunction:
         build: Callable[[int], ca.Function],
         sizes: tuple[int, ...],
         kept_as: Sequence[Any] | None = None,
+        patience: int = 0,
     ) -> None:
         self._build = build
         self._kept_as = kept_as
         self._sizes = sizes
         self._compiled: dict[int, Compiled] = {}
         self._padded_calls = 0
+        self._patience = patience
 
     def __call__(self, inputs: Sequence[Array], unpack: Unpack, threads: int = 1) -> list[Array]:
         """The outputs, a row each, a block for each thread at a time."""
-        largest = self._sizes[-1]
         rows = max(len(inputs[0]), 1)
-        blocks = [[values[i : i + largest] for values in inputs] for i in range(0, rows, largest)]
-        # in this thread, whose time counts
-        sizes = [self.prepare(len(block[0])) for block in blocks]
+        sizes = self._split(rows)
+        ends = list(accumulate(sizes))
+        blocks = [[values[end - size : end] for values in inputs] for size, end in zip(sizes, ends)]
         if threads > 1 and len(blocks) > 1:
             with ThreadPoolExecutor(threads) as pool:
                 parts = list(pool.map(self._evaluate, blocks, sizes, repeat(unpack)))
@@ -59,16 +62,27 @@ class RowFunction:
             parts = list(map(self._evaluate, blocks, sizes, repeat(unpack)))
         return [np.concatenate(part) for part in zip(*parts)]
 
+    def _split(self, rows: int) -> list[int]:
+        """Sizes of the blocks for so many rows, built in this thread, whose time counts."""
+        sizes = list[int]()
+        while rows > 0:
+            sizes.append(self.prepare(rows))
+            rows -= sizes[-1]
+        return sizes
+
     @property
     def built(self) -> list[int]:
         """Sizes of the blocks that are built."""
         return sorted(self._compiled)
 
     def prepare(self, rows: int) -> int:
-        """The size of block for so many rows, built; single ones use another for a while."""
+        """The size of the next block of so many rows, built; rows use another for a while."""
         size = next((size for size in self._sizes if size >= rows), self._sizes[-1])
         if size in self._compiled:
             return size
+        if size > self._sizes[0] and self._patience > 0:
+            self._patience -= 1
+            return self.prepare(1)
         larger = [built for built in self._compiled if built > size]
         if size == 1 and larger and self._padded_calls < 200:
             self._padded_calls += 1

@@ -91,12 +91,19 @@ class Batch:
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
         build = partial(compile_derivatives, simulation)
-        # equations of many terms take as long a row in larger blocks, and longer to build
-        sizes = (1, 4, 8) if simulation.plant.steps_at_once == 1 else (1, 4)
-        self._derivatives = RowFunction(build, sizes, simulation.kept_as("derivatives"))
+        # equations of many terms take nearly as long a row in larger blocks, and longer to build
+        has_few_terms = simulation.plant.steps_at_once == 1
+        self._derivatives = RowFunction(
+            build,
+            (1, 4, 8) if has_few_terms else (1, 4),
+            simulation.kept_as("derivatives"),
+            patience=0 if has_few_terms else 300,
+        )
         # of one size, since scenarios that join a problem would have another one built
         self._arrivals = RowFunction(
-            partial(compile_arrivals, simulation), sizes[1:2], simulation.kept_as("arrivals")
+            partial(compile_arrivals, simulation),
+            (4,) if has_few_terms else (2,),
+            simulation.kept_as("arrivals"),
         )
 
     @cached_property

@@ -286,6 +286,8 @@ class _Numbers:
             )
             x = stop.unknowns
             iterations += stop.iterations
+            if SolveStatus.from_ipopt(stop.return_status) is SolveStatus.INFEASIBLE:
+                break  # the width is of the objective alone
         assert stop is not None
         coefficients = np.clip(x[: problem.profile.size], *box)
         energy, missed, peaks = self.figures(coefficients)

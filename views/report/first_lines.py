@@ -10,7 +10,6 @@ from quietarm.ocp.joint_words import broken_limits
 from quietarm.ocp.planning.as_timed import TimedAnswer
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.rest import is_at_rest
-from quietarm.ocp.task import PointToPoint
 from quietarm.views.report.acting_words import ranges_words
 from quietarm.views.report.captions import left_words
 from quietarm.views.report.terminal import LEAST_WIDTH
@@ -88,7 +87,7 @@ def _broken(motion: JudgedMotion) -> str:
 
 def _beside_the_cycloid(words: Sequence[str], motion: JudgedMotion) -> list[str]:
     """Return clauses with the plain cycloid's behind them, unless that is the motion or fails."""
-    cycloid = plain_cycloid(motion.task)
+    cycloid = plain_cycloid(motion)
     clauses = [*words]
     if cycloid is not None and not _is_the_same(motion, cycloid):
         clauses.append(f"the plain cycloid takes {_energy_and_end(cycloid)}")
@@ -97,9 +96,12 @@ def _beside_the_cycloid(words: Sequence[str], motion: JudgedMotion) -> list[str]
     return [_sentence(words) for words in whole]
 
 
-def plain_cycloid(task: PointToPoint) -> JudgedMotion | None:
-    """Return the plain cycloid of a move; None where CVODES fails on it."""
-    cycloid = JudgedMotion.of_profile(task, CycloidPolynomial(0), [])
+def plain_cycloid(motion: JudgedMotion) -> JudgedMotion | None:
+    """Return the plain cycloid of a motion's move; None where CVODES fails on it."""
+    profile = motion.profile
+    if not isinstance(profile, CycloidPolynomial):  # else its equations are built
+        profile = CycloidPolynomial(0)
+    cycloid = JudgedMotion.of_profile(motion.task, profile, profile.plain)
     try:
         cycloid.figures  # noqa: B018  # computed when they are first asked for
     except SolverFailedError:

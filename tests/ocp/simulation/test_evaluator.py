@@ -59,6 +59,9 @@ def test_errors_that_are_passed_are_scenarios_as_those_of_the_task(tasks, name):
     assert evaluation.energy == pytest.approx(own.energy, rel=1e-12)
     # peaks are sampled at other times, of which each may miss 3e-8 (`FreeVibration.peak`)
     assert evaluation.residual == pytest.approx(own.residual, rel=6e-8, abs=1e-12)
+    assert passed.residuals(MOTIONS, task.scenarios) == pytest.approx(
+        evaluation.residual, rel=1e-12
+    )
 
 
 @PLANTS
@@ -135,6 +138,19 @@ def test_functions_of_rows_go_as_soon_as_they_are_forgotten():
         assert reference() is None
     finally:
         gc.enable()
+
+
+def test_rows_take_smaller_blocks_for_a_while_before_a_larger_one_is_built():
+    def build(rows):
+        x = ca.MX.sym("x", rows, 2)
+        return ca.Function("twice", [x], [2 * x])
+
+    function = RowFunction(build, sizes=(1, 4), patience=5)
+    rows = np.arange(12.0).reshape(6, 2)
+    for built in ([1], [1, 4], [1, 4]):  # the first six rows take all five
+        (values,) = function([rows], copy_rows)
+        assert np.array_equal(values, 2 * rows)
+        assert function.built == built
 
 
 def test_a_few_tasks_that_come_in_turn_are_compiled_once(tasks):
