@@ -283,7 +283,8 @@ class GivenFunction(ProblemFunction):
         if table.shape != shape:
             raise ValueError(
                 f"{self._name} returns {what} of shape {table.shape}, not {shape}; give "
-                f"{', '.join(names) or 'none'} in this order for each candidate"
+                f"{', '.join(names) or 'none'} in this order for each candidate, or set others as "
+                f"its attribute `{'constraints' if what == 'violations' else what}`"
             )
         return table
 

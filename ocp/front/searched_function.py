@@ -133,7 +133,7 @@ def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float,
     for side, value in sides.items():
         if value is None:
             raise ValueError(
-                f"{side} is missing; give lower= and upper=, the bounds of the function's "
+                f"{side} is missing; give lower and upper, the bounds of the function's "
                 "coefficients, or set them as attributes of the function"
             )
         rows[side] = numbers(side, value, "a number for each coefficient")
