@@ -28,8 +28,9 @@ def list_(given: Given) -> None:
     """List plants, problems, methods and objectives; or one of them by its name.
 
     A plant comes with the value, unit, meaning and source of its parameters, a problem with its
-    move and box, a method with its settings; `drawn` are the random moves of docs/results; a robot, by its file, with its masses, joints, springs
-    and limits, and with modes and sag along a path.
+    move and box, a method with its settings; `drawn` are the random moves of docs/results; a robot,
+    by its file, comes with its masses, joints, springs and limits, and with modes and sag along a
+    path.
 
     \b
     Examples:
