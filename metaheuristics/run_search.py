@@ -316,8 +316,8 @@ class SearchRun:
             raise ValueError("evaluations stand in place of generations; leave one of them out")
         if not of_move and generations is None and evaluations is None:
             raise ValueError(
-                "evaluations is missing; give the number of candidates, such as evaluations=1000: "
-                "a function may take long"
+                "evaluations is missing; give the number of candidates, such as 1000: a function "
+                "may take long"
             )
         if algorithm is None:
             algorithm = (
@@ -441,6 +441,10 @@ def _set_up(
     except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
         name = type(algorithm).__name__
         raise ValueError(f"{name} cannot search this task: {error}") from None
+    if evaluations and isinstance(algorithm.termination, MaximumGenerationTermination):
+        # pymoo's RVEA makes generations of evaluations, one too few
+        generations = -(-evaluations // algorithm.n_offsprings)
+        algorithm.termination = MaximumGenerationTermination(generations)
 
 
 def _generations(algorithm: Any, first: NDArray[np.float64]) -> Iterator[None]:

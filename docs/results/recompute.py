@@ -1,9 +1,11 @@
 """Every figure of report.md from the files beside it, with moocore, scipy and numpy, not quietarm.
 
-    python recompute.py            compares them with figures.json
+    python recompute.py            compares them with figures.json, and the pages with the figures
     python recompute.py --write    writes figures.json
 
-report.md is filled in from figures.json. What the files hold is in report.md, under "Files".
+report.md and appendix.md are filled in from figures.json by templates of the repository, which need
+quietarm for the names of methods: without it the figures alone are compared. What the files hold is
+in appendix.md, under "Files".
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -1222,22 +1225,70 @@ def differences(first: Any, second: Any, place: str = "") -> list[str]:
     return [] if same else [f"{place}: {first} and {second}"]
 
 
-def main() -> int:
+PAGES = ("report.md", "appendix.md")
+OF_SIZE = re.compile(r"[\d.]+ MB in all")
+"""Of the folder, which holds the page itself."""
+
+
+def wrong_lines(folder: Path, figures: Mapping[str, Any]) -> list[str]:
+    """Lines of the pages, and of choose.md, that are not those of the figures.
+
+    ImportError where the templates, or quietarm, are missing.
+    """
+    benchmarks = Path(__file__).parents[2] / "benchmarks"
+    sys.path.append(str(benchmarks))
+    page = import_module("parts.crossover.page")
+    filled = {name: page.page_of(name, figures, folder) for name in PAGES}
+    lines = list[str]()
+    for name, text in filled.items():
+        lines += other_lines(name, (folder / name).read_text(), text)
+    choose = folder.parent / "choose.md"
+    if choose.exists():
+        repeated, decision = map(page.decision_in, (choose.read_text(), filled[PAGES[0]]))
+        lines += other_lines("the table of choose.md", repeated, decision)
+    return lines
+
+
+def other_lines(name: str, text: str, expected: str) -> list[str]:
+    """Name the lines of a page that differ from what was expected, by their first other number."""
+    rows = [OF_SIZE.sub("", page).splitlines() for page in (text, expected)]
+    if len(rows[0]) != len(rows[1]):
+        return [f"{name} has {len(rows[0])} lines, and the figures fill {len(rows[1])}"]
+    lines = list[str]()
+    for number, (row, of_figures) in enumerate(zip(*rows, strict=True), start=1):
+        if row == of_figures:
+            continue
+        printed, known = (re.findall(r"-?\d[\d.,]*\d|-?\d", line) for line in (row, of_figures))
+        pairs = [pair for pair in zip(printed, known, strict=False) if pair[0] != pair[1]]
+        one, other = pairs[0] if pairs else (row, of_figures)
+        lines.append(f"{name}, line {number}: {one} is printed, and the files give {other}")
+    return lines
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
     """Compare, or write."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
+    parser.add_argument("folder", nargs="?", type=Path, default=Path(__file__).parent)
     parser.add_argument("--write", action="store_true")
-    options = parser.parse_args()
-    folder = Path(__file__).parent
+    options = parser.parse_args(arguments)
+    folder = options.folder
     figures = json.loads(json.dumps(compute(folder)))
     path = folder / "figures.json"
     if options.write:
         path.write_text(json.dumps(figures, indent=1) + "\n")
         return 0
-    lines = differences(json.loads(path.read_text()), figures)
+    published = json.loads(path.read_text())
+    lines = differences(published, figures)
     print("\n".join(lines[:20]) if lines else "all figures are those of figures.json")
-    return int(bool(lines))
+    try:
+        wrong = wrong_lines(folder, published)
+    except ImportError as error:
+        print(f"{' and '.join(PAGES)} are not compared: {error}; run this in a checkout")
+        return int(bool(lines))
+    print("\n".join(wrong) if wrong else f"{' and '.join(PAGES)} have these figures")
+    return int(bool(lines or wrong))
 
 
 if __name__ == "__main__":

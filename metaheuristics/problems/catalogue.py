@@ -311,7 +311,7 @@ def problem_of(name: str) -> NamedProblem:
         return PROBLEMS[name]
     if name in drawn_moves():
         return _drawn_problem(name)
-    raise ValueError(unknown("problem", name, PROBLEMS))
+    raise ValueError(unknown("problem", name, [*PROBLEMS, *drawn_moves()]))
 
 
 @interruptible

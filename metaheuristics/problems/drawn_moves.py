@@ -8,6 +8,7 @@ seed and rule (docs/results/appendix.md, "How"); their tables are in the folder 
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -65,11 +66,15 @@ class DrawnMove:
     peaks: tuple[str, ...] = ()
 
     @property
+    def energy(self) -> Energy:
+        """What counts as energy."""
+        return ENERGIES[self.kind]
+
+    @property
     def task(self) -> PointToPoint:
         """The move with its energy and limits."""
-        energy: Energy = ENERGIES[self.kind]
         limits: Any = self.limits or {}
-        return PointToPoint(self.plant, self.target, self.duration, energy=energy, **limits)
+        return PointToPoint(self.plant, self.target, self.duration, energy=self.energy, **limits)
 
     @property
     def profile(self) -> CycloidPolynomial:
@@ -107,6 +112,16 @@ def drawn_moves() -> Mapping[str, DrawnMove]:
         every_kind = of_plant[row["plant"]] <= 2  # the first two moves of a plant
         moves |= dict(_variants(row["move"], move, limits[row["move"]], every_kind))
     return moves
+
+
+def drawn_groups() -> dict[str, list[str]]:
+    """Return the names of all drawn problems by what they end in after their move's name."""
+    groups = dict[str, list[str]]()
+    for name in drawn_moves():
+        move = re.match(r".*?-m\d+(?=-)", name)
+        ending = name[move.end() :] if move else name
+        groups.setdefault(ending, []).append(name)
+    return groups
 
 
 def _variants(

@@ -15,7 +15,7 @@ from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.evaluation.population import replace_failures
 from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
 from quietarm.ocp import Front
-from quietarm.ocp.checks import clipped, numbers, table_of, whole, words_of_error
+from quietarm.ocp.checks import clipped, numbers, quoted, table_of, whole, words_of_error
 from quietarm.ocp.front.function_front import (
     FunctionEntries,
     FunctionFront,
@@ -33,8 +33,8 @@ _ALL_FAILED = 20
 """A function that gives no finite number for so many first candidates is refused."""
 
 
-class _UnfitError(ValueError):
-    """A function returns what is no objectives and violations."""
+class _FunctionFailedError(ValueError):
+    """A user's own function raises an error, which is the cause of this one."""
 
 
 class GivenFunction(ProblemFunction):
@@ -62,7 +62,9 @@ class GivenFunction(ProblemFunction):
         that no earlier one dominated.
     vectorized : bool, optional
         Whether it takes many candidates at once. Where this is not said, the function is called
-        with an array of one row first, and with the row alone where that does not fit.
+        with one candidate first; an array of candidates follows where it returns rows, or where it
+        fails as functions of arrays do, with an IndexError, a TypeError or a ValueError. So no
+        candidate that was evaluated is evaluated again.
     threads : int
         Calls at the same time: of blocks of candidates, or of candidates.
     name : str, optional
@@ -118,7 +120,7 @@ class GivenFunction(ProblemFunction):
         self.reference = _corner(stated("reference", reference), self.objectives)
         self.threads = whole("threads", threads, 1, 1_000)
         self._function = function
-        self._vectorized: bool | None = stated("vectorized", vectorized)
+        self._vectorized = _said(stated("vectorized", vectorized))
         self._failed_at_first: int | None = 0
 
     @property
@@ -185,26 +187,44 @@ class GivenFunction(ProblemFunction):
     def _first(self, row: Array) -> Array:
         """Values of the first candidate; from now on it is known how the function is called."""
         try:
-            values = self._many(row)
-            self._vectorized = True
-        except ValueError as as_array:
-            try:
-                values = self._one(row[0])
-            except _UnfitError:
+            result = self._called(row[0].copy())
+        except _FunctionFailedError as alone:
+            if not isinstance(alone.__cause__, IndexError | TypeError | ValueError):
                 raise
-            except ValueError as alone:
-                if str(alone) == str(as_array):
-                    raise
-                raise ValueError(
-                    f"{alone} (called with one candidate; with an array of them: {as_array})"
-                ) from None
-            self._vectorized = False
+            return self._as_array(row, alone)
+        of_many = _dimensions(result[0]) == 2  # it makes rows, of numbers or of the candidate
+        if of_many and len(result[0]) != 1:
+            return self._as_array(row)
+        self._vectorized = of_many
+        return self._rows_of(*result, 1) if of_many else self._row_of(*result)
+
+    def _as_array(self, row: Array, alone: _FunctionFailedError | None = None) -> Array:
+        """Values of the first candidate by a call with an array of one row."""
+        try:
+            values = self._many(row)
+        except ValueError as as_array:
+            if alone is None:
+                raise
+            if str(alone) == str(as_array):
+                raise alone from None
+            raise ValueError(
+                f"{alone} (called with one candidate; with an array of them: {as_array})"
+            ) from None
+        self._vectorized = True
         return values
 
     def _many(self, table: Array) -> Array:
         """Values of many candidates by one call."""
-        objectives, violations = self._called(table.copy())
-        count = len(table)
+        return self._rows_of(*self._called(table.copy()), len(table))
+
+    def _one(self, row: Array) -> Array:
+        """Values of one candidate, as a table of one row."""
+        return self._row_of(*self._called(row.copy()))
+
+    def _rows_of(self, objectives: Any, violations: Any, count: int) -> Array:
+        """What was returned of many candidates, as a table."""
+        if len(self.constraints) == 1 and _dimensions(violations) == 1:
+            violations = [[value] for value in violations]  # one number for each candidate
         return np.column_stack(
             [
                 self._shaped(objectives, (count, len(self.objectives)), "objectives"),
@@ -212,9 +232,8 @@ class GivenFunction(ProblemFunction):
             ]
         )
 
-    def _one(self, row: Array) -> Array:
-        """Values of one candidate, as a table of one row."""
-        objectives, violations = self._called(row.copy())
+    def _row_of(self, objectives: Any, violations: Any) -> Array:
+        """What was returned of one candidate, as a table of one row."""
         if violations is not None and np.ndim(violations) == 0:
             violations = [violations]
         values = [
@@ -234,7 +253,7 @@ class GivenFunction(ProblemFunction):
         if self.constraints and _is_nan(result):
             return np.nan, np.full(len(self.constraints), np.nan)
         if self.constraints:
-            raise _UnfitError(
+            raise ValueError(
                 f"{self._name} returns {_kind(result)}; with constraints give two: (objectives, "
                 "violations)"
             )
@@ -253,22 +272,23 @@ class GivenFunction(ProblemFunction):
         if 0 in shape and (values is None or np.size(values) == 0):
             return np.empty(shape)
         if values is None:
-            raise _UnfitError(f"{self._name} returns no {what}; return {', '.join(names)}")
+            raise ValueError(f"{self._name} returns no {what}; return {', '.join(names)}")
         if _is_nan(values) and len(shape) == 1:
             return np.full(shape, np.nan)
         wanted = f"numbers of shape {shape}"
         try:
             table = numbers(what, values, wanted, infinite=True)
         except ValueError as error:
-            raise _UnfitError(f"{self._name}: {error}") from None
+            raise ValueError(f"{self._name}: {error}") from None
         if table.shape != shape:
-            raise _UnfitError(
+            raise ValueError(
                 f"{self._name} returns {what} of shape {table.shape}, not {shape}; give "
-                f"{', '.join(names) or 'none'} in this order for each candidate"
+                f"{', '.join(names) or 'none'} in this order for each candidate, or set others as "
+                f"its attribute `{'constraints' if what == 'violations' else what}`"
             )
         return table
 
-    def _failed(self, error: Exception) -> ValueError:
+    def _failed(self, error: Exception) -> _FunctionFailedError:
         """The function's own error, in one line with its place."""
         code = getattr(self._function, "__code__", None)
         file = code.co_filename if code else getattr(
@@ -277,7 +297,7 @@ class GivenFunction(ProblemFunction):
         frames = traceback.extract_tb(error.__traceback__)
         lines = [frame.lineno for frame in frames if frame.filename == file]
         place = f" ({file}, line {lines[-1]})" if lines else ""
-        return ValueError(
+        return _FunctionFailedError(
             f"{self._name}{place} fails: {words_of_error(error)}; mend it, or return nan for a "
             "candidate that cannot be evaluated"
         )
@@ -301,9 +321,18 @@ class GivenFunction(ProblemFunction):
             )
 
 
+def _dimensions(value: Any) -> int:
+    """Return how many dimensions an array has, or would have; 0 of what makes none."""
+    try:
+        return int(np.ndim(value))
+    except ValueError:  # rows of different lengths
+        return 0
+
+
 def _is_nan(value: Any) -> bool:
     """Return whether a candidate's value is one nan, in the place of all of them."""
-    return np.ndim(value) == 0 and isinstance(value, float | np.floating) and bool(np.isnan(value))
+    is_number = isinstance(value, float | np.floating)
+    return is_number and bool(np.isnan(value))
 
 
 def name_of(function: Function) -> str:
@@ -311,6 +340,15 @@ def name_of(function: Function) -> str:
     inner = getattr(function, "func", function)  # of functools.partial
     name = getattr(inner, "__name__", type(inner).__name__)
     return "function" if name == "<lambda>" else name
+
+
+def _said(vectorized: Any) -> bool | None:
+    if vectorized is None or isinstance(vectorized, bool | np.bool_):
+        return vectorized
+    raise ValueError(
+        f"vectorized is {quoted(vectorized)}; give True for a function of many candidates, or "
+        "False for one of a single candidate"
+    )
 
 
 def _corner(reference: Any, objectives: Sequence[str]) -> tuple[float, ...] | None:

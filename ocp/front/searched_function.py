@@ -66,8 +66,8 @@ class SearchedFunction:
         names = _checked_names("objectives", self.objectives)
         if len(names) < 2:
             raise ValueError(
-                f"objectives are {', '.join(names) or 'none'}; give two or more, as "
-                "('residual', 'energy'): a front trades them"
+                f"objectives are {', '.join(names) or 'none'}; give two or more, such "
+                "as ('residual', 'energy'): a front trades them"
             )
         units = _checked_units(self.units, names)
         broken = _checked_names("constraints", self.constraints)
@@ -133,7 +133,7 @@ def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float,
     for side, value in sides.items():
         if value is None:
             raise ValueError(
-                f"{side} is missing; give lower= and upper=, the bounds of the function's "
+                f"{side} is missing; give lower and upper, the bounds of the function's "
                 "coefficients, or set them as attributes of the function"
             )
         rows[side] = numbers(side, value, "a number for each coefficient")
@@ -166,7 +166,8 @@ def checked_box(lower: Any, upper: Any) -> tuple[tuple[float, ...], tuple[float,
 
 def _checked_names(what: str, names: Any) -> tuple[str, ...]:
     """Names of objectives or constraints, each once."""
-    entries = several(what, names, "names, such as ['residual', 'energy']")
+    example = "touch" if what == "constraints" else "energy"
+    entries = several(what, names, f"names, such as ['{example}']")
     for name in entries:
         if not isinstance(name, str) or not name.strip() or len(name) > _LONGEST:
             raise ValueError(

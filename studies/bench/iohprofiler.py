@@ -2,6 +2,8 @@
 
 A problem is a function of IOHprofiler, a method an algorithm. The value is the share of the
 reference front's hypervolume that a run lacks so far, which is minimised; the seconds stand beside.
+A value is of a front: the solution that a run states for its best value is the last candidate that
+entered that front.
 
 References
 ----------
@@ -120,13 +122,21 @@ def _table_of(rows: np.ndarray) -> str:
 
 
 def _run_of(run: Run, rows: np.ndarray, terms: int) -> Mapping[str, Any]:
-    """Describe a run; its best is a front, so that no candidate stands there but zeros."""
+    """Describe a run, with the candidate that completed its best front."""
     best = rows[rows[:, 1].argmin()]
+    count = int(best[0])
     return {
         "instance": 1 if run.front.record.seed is None else run.front.record.seed + 1,
         "evals": int(rows[-1, 0]),
-        "best": {"evals": int(best[0]), "y": float(best[1]), "x": [0.0] * terms},
+        "best": {"evals": count, "y": float(best[1]), "x": _last_entered(run, count, terms)},
     }
+
+
+def _last_entered(run: Run, count: int, terms: int) -> list[float | None]:
+    """The coefficients of the last of so many candidates that entered the front; null of none."""
+    entries = run.front.entries
+    entered = np.searchsorted(entries.candidates, count, side="right")
+    return list(entries.coefficients[entered - 1]) if entered else [None] * terms
 
 
 def _plain(name: str) -> str:

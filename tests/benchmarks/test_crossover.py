@@ -230,13 +230,33 @@ def test_pictures_say_what_is_seen_in_colours_of_the_grammar():
     assert "MOEA/D-DE has a gap of 0.66 and 26 %" in drawn[1].get_suptitle()
 
 
-@pytest.mark.parametrize("name", ["report.md", "appendix.md"])
-def test_the_page_and_what_to_take_are_those_of_the_template(name):
+def test_the_pages_are_those_of_the_templates_and_a_wrong_digit_is_named():
     figures = json.loads((RESULTS / "figures.json").read_text())
-    of_size = re.compile(r"[\d.]+ MB in all")  # of the folder, which holds this page
-    text = page.page_of(name, figures, RESULTS)
-    published = (RESULTS / name).read_text()
-    assert of_size.sub("", text) == of_size.sub("", published)
+    assert recompute.wrong_lines(RESULTS, figures) == []
+    text = (RESULTS / "report.md").read_text()
+    line = recompute.other_lines("report.md", with_another_digit(text, "| a model that"), text)
+    assert re.fullmatch(r"report.md, line \d+: \S+ is printed, and the files give \S+", *line)
+
+
+def with_another_digit(text, row):
+    """A text whose first digit after some words is another one."""
+    digit = re.compile(r"\d").search(text, text.index(row))
+    other = str((int(digit[0]) + 1) % 10)
+    return text[: digit.start()] + other + text[digit.end() :]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["report.md", "appendix.md", "choose.md"])
+def test_the_published_script_ends_with_1_for_a_wrong_digit_on_any_page(name, tmp_path, capsys):
+    folder = tmp_path / "results"
+    shutil.copytree(RESULTS, folder, ignore=shutil.ignore_patterns("*.png"))
+    shutil.copy(ROOT / "docs" / "choose.md", tmp_path)
+    path = folder.parent / name if name == "choose.md" else folder / name
+    row = "| MOEA/D-DE |" if name == "appendix.md" else "| a model that"
+    path.write_text(with_another_digit(path.read_text(), row))
+    assert recompute.main([str(folder)]) == 1
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if "printed" in line]
+    assert re.match(rf".*{name}, line \d+: ", line)
 
 
 def test_runtime_profiles_rise_and_end_as_the_table_says():

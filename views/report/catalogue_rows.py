@@ -11,24 +11,33 @@ from quietarm.metaheuristics.methods.gradient_methods import gradient_settings, 
 from quietarm.metaheuristics.methods.settings import MethodSetting
 from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.problems.card import card_of
-from quietarm.metaheuristics.problems.catalogue import PROBLEMS, NamedProblem
+from quietarm.metaheuristics.problems.catalogue import (
+    PROBLEMS,
+    NamedProblem,
+    drawn_problems,
+    problem_of,
+)
+from quietarm.metaheuristics.problems.drawn_moves import drawn_groups, drawn_moves
 from quietarm.models import Plant, RobotOnPath
+from quietarm.ocp import AbsolutePower
 from quietarm.ocp.checks import spelling, unknown
 from quietarm.ocp.figures import ENERGY
 from quietarm.ocp.limits import QUANTITIES, RESIDUAL
-from quietarm.ocp.objectives import known_objectives
+from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, known_objectives
 from quietarm.ocp.solvers.sqp import Sqp
 from quietarm.views.report.method_rows import GRADIENT_LABELS, label_of
 from quietarm.views.report.words import counted, error_words, objective_words, window_words
 
 Row = tuple[str, str]
 ROBOT_FILE = "A robot of a URDF that follows a path; PLANT is its file, such as ur5.yaml."
-KINDS = ("plants", "problems", "methods", "objectives")
+KINDS = ("plants", "problems", "drawn", "methods", "objectives")
+"""Kinds that are listed; `drawn` are the problems of docs/results."""
+BY_GRADIENT = "the gradient finds a reference front when one is asked for, in seconds"
 
 
 def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, list[Row]]:
     """A title, and rows of one of `KINDS` or of an entry by its name; ValueError of no other."""
-    known = [*KINDS, *plants, *PROBLEMS]
+    known = [*KINDS, *plants, *PROBLEMS, *drawn_problems()]
     spelt = {spelling(name): name for name in known}
     if spelling(name) not in spelt:
         return _method_rows(name, known)
@@ -49,6 +58,8 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         else:
             rows = [(label, f"{words}, {_window(PROBLEMS[label])}") for label, words in rows]
         return said, rows
+    if name == "drawn":
+        return drawn_rows(names=True)
     if name == "methods":
         rows = [(method, f"{label_of(method)}, by the gradient") for method in GRADIENT_LABELS]
         rows += [(method, f"{label_of(method)}: {PRESETS[method].source}") for method in PRESETS]
@@ -63,11 +74,34 @@ def catalogue_rows(name: str, plants: Mapping[str, type[Plant]]) -> tuple[str, l
         rows = [(entry.name, _parameter(entry)) for entry in plants[name].parameter_fields()]
         many = counted(len(rows), "parameter")
         return f"{name} has {many}: --set NAME=VALUE, in SI or such as 2Hz, 600mm, 200g", rows
-    problem = PROBLEMS[name]
+    problem = problem_of(name)
     words = f"{_problem(problem)}, {_window(problem)}"
     task = problem.task
     move = f"{task.plant.name}, {task.ends} in {task.duration:g} s"
+    if name not in PROBLEMS:
+        rows = [("problem", words), ("energy", task.energy.name), ("reference front", BY_GRADIENT)]
+        return f"{name}: {move}, a random move of docs/results", rows
     return f"{name}: {move}, with a tested reference front", [("problem", words), *_card(problem)]
+
+
+def drawn_rows(*, names: bool) -> tuple[str, list[Row]]:
+    """A title, and rows of the drawn problems by what their names end in, with all names or not."""
+    rows = list[Row]()
+    for ending, group in drawn_groups().items():
+        move = drawn_moves()[group[0]]
+        limits = [quantity.removesuffix("_limit") for quantity in move.limits or ()]
+        objectives = (*RESIDUAL_AND_ENERGY, *move.peaks)
+        words = ", ".join([
+            counted(len(group), "move"),
+            counted(move.terms, "coefficient"),
+            *([f"energy {move.energy.name}"] if move.energy != AbsolutePower() else []),
+            *([f"limits {' and '.join(limits)}"] if limits else []),
+            *([f"objectives {objective_words(objectives)}"] if move.peaks else []),
+        ])  # fmt: skip
+        rows.append((f"MOVE{ending}", f"{words}: {', '.join(group)}" if names else words))
+    total = sum(map(len, drawn_groups().values()))
+    every = "" if names else "; `quietarm list drawn` has all names"
+    return f"{counted(total, 'problem')} of docs/results; {BY_GRADIENT}{every}", rows
 
 
 def _method_rows(typed: str, others: Sequence[str]) -> tuple[str, list[Row]]:

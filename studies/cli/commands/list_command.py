@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from quietarm.metaheuristics.problems.catalogue import PROBLEMS
+from quietarm.metaheuristics.problems.catalogue import PROBLEMS, drawn_problems, problem_of
 from quietarm.models import Robot, known_plants
 from quietarm.ocp import Front
 from quietarm.studies.cli.given import Given
@@ -12,14 +12,14 @@ from quietarm.studies.cli.options import ENDS, ROBOT_PATH, command
 from quietarm.studies.cli.outputs import FOLDER, finish, output_option
 from quietarm.studies.cli.plants import OF_ROBOTS
 from quietarm.studies.cli.robot_options import path_of
-from quietarm.views.report.catalogue_rows import KINDS, catalogue_rows
+from quietarm.views.report.catalogue_rows import KINDS, catalogue_rows, drawn_rows
 from quietarm.views.report.robot_rows import robot_rows, robot_words, usual_path
 from quietarm.views.report.saving import inside
 from quietarm.views.report.words import counted
 
 
 @command(
-    click.Argument(["names"], nargs=-1, metavar="[plants|problems|methods|objectives|NAME|"
+    click.Argument(["names"], nargs=-1, metavar="[plants|problems|drawn|methods|objectives|NAME|"
                    "ROBOT.yaml]..."),
     *ENDS, *ROBOT_PATH,
     output_option({FOLDER: "the reference fronts of the problems"}),
@@ -28,8 +28,9 @@ def list_(given: Given) -> None:
     """List plants, problems, methods and objectives; or one of them by its name.
 
     A plant comes with the value, unit, meaning and source of its parameters, a problem with its
-    move and box, a method with its settings; a robot, by its file, with its masses, joints, springs
-    and limits, and with modes and sag along a path.
+    move and box, a method with its settings; `drawn` are the random moves of docs/results; a robot,
+    by its file, comes with its masses, joints, springs and limits, and with modes and sag along a
+    path.
 
     \b
     Examples:
@@ -52,16 +53,20 @@ def list_(given: Given) -> None:
             way = "the path" if asked else "a straight path of its joints"
             shown += [robot_words(robot, path, way), robot_rows(robot, path)]
             continue
-        title, rows = catalogue_rows(name, plants)
+        of_all = name == "drawn" and not given.names  # beside all else the groups will do
+        title, rows = drawn_rows(names=False) if of_all else catalogue_rows(name, plants)
         shown += [f"{title}:", [(f"  {entry}", words) for entry, words in rows]]
-    problems = PROBLEMS if "problems" in names else [name for name in names if name in PROBLEMS]
+    problems = [name for name in names if name in PROBLEMS or name in drawn_problems()]
+    if "problems" in names:
+        problems = [*PROBLEMS, *(name for name in problems if name not in PROBLEMS)]
     if given.output and not problems:
         raise ValueError("--output is for the reference fronts of problems; name one")
     for folder in given.output:
         fronts = dict[str, Front]()
         for name in problems:
-            fronts |= zip(PROBLEMS[name].tasks(), PROBLEMS[name].fronts())
-            fronts[name] = PROBLEMS[name].front()  # of all objectives
+            problem = problem_of(name)
+            fronts |= zip(problem.tasks(), problem.fronts())
+            fronts[name] = problem.front()  # of all objectives
         saves = {f"{name}.json": front.save for name, front in fronts.items()}
         for path, save in inside(folder, saves):
             save(path)

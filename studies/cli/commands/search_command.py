@@ -250,7 +250,19 @@ def _function(given: Given) -> _Asked:
             raise ValueError(
                 f"{path} is for a front of a move; of a function give a .json, .csv or a picture"
             )
-    given.function.load()  # what is wrong with the file is said before anything else
+    function = given.function.load()  # what is wrong with the file is said before anything else
+    for side in ("lower", "upper"):
+        if given.pick(side)[side] is None and getattr(function, side, None) is None:
+            raise click.UsageError(
+                f"Missing option '--{side}', a number for each coefficient, such as "
+                f"--{side}={'-1,-1' if side == 'lower' else '1,1'}; or set {side} as an attribute "
+                f"of {given.function.name}"
+            )
+    if given.evaluations is None and given.generations is None:
+        raise click.UsageError(
+            "Missing option '--evaluations', the number of candidates, such as 1000: a function "
+            "may take long"
+        )
     method = (
         given.method
         if given.typed("method")

@@ -41,6 +41,49 @@ def test_a_function_of_one_candidate_and_one_of_an_array_give_one_front():
     assert np.median(second - (2 - np.sqrt(first)) ** 2) < 0.1
 
 
+def rows(x):
+    """Of an array, but it makes rows of one candidate's numbers as well."""
+    return [[np.sum(value**2), np.sum((value - 2) ** 2)] for value in x]
+
+
+@pytest.mark.parametrize(
+    ("function", "failed"),
+    [(parabolas, 0), (many, 1), (rows, 1), (lambda x: many(np.atleast_2d(x)), 0)],
+)
+def test_no_candidate_is_evaluated_outside_the_budget(function, failed):
+    shapes = []
+
+    def counted(x):
+        shapes.append(np.shape(x))
+        return function(x)
+
+    front = qa.search(counted, **BOX, evaluations=30, algorithm="es", reevaluate=2)
+    assert shapes[0] == (2,)  # a function of an array may fail here, and evaluates nothing
+    evaluated = sum(shape[0] if len(shape) == 2 else 1 for shape in shapes[failed:])
+    assert evaluated == front.record.evaluations == 30
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", [name for name in PRESETS if name != "memetic"])
+def test_every_method_calls_a_function_as_often_as_its_budget_says(method, tmp_path):
+    calls = []
+
+    def counted(x):
+        calls.append(x)
+        return parabolas(x)
+
+    budget = 50 if method == "gp" else 410
+    front = qa.search(counted, **BOX, evaluations=budget, algorithm=method, reevaluate=2)
+    front.save(tmp_path / "front.json")
+    front.save_csv(tmp_path / "front.csv")
+    qa.pictures.front_figure([front])
+    assert len(calls) == front.record.evaluations == budget
+    problem = NamedProblem.of_function("mine", counted, **BOX, reference_front=front)
+    calls.clear()
+    Job(problem, method, 0, budget).run()
+    assert len(calls) == budget
+
+
 @pytest.mark.slow_after(2)
 @pytest.mark.parametrize("method", ["es", "nsga2", "slsqp", "random"])
 def test_constraints_hold_in_what_every_kind_of_method_finds(method):
@@ -52,6 +95,18 @@ def test_constraints_hold_in_what_every_kind_of_method_finds(method):
     assert front.infeasible > 0
     assert (front.coefficients[:, 0] <= 1).all()
     assert list(front.columns()) == ["way_mm", "work_J", "a_1", "a_2"]
+
+
+def test_one_violation_of_many_candidates_may_be_a_row_of_numbers():
+    front = qa.search(
+        lambda x: (many(x), x[:, 0] - 1),
+        **BOX,
+        constraints=["wall"],
+        evaluations=60,
+        algorithm="es",
+    )
+    assert front.infeasible > 0
+    assert (front.coefficients[:, 0] <= 1).all()
 
 
 def test_attributes_of_the_function_say_what_no_argument_says():
@@ -166,6 +221,9 @@ def broken(x):
         (parabolas, {"constraints": ["wall"]}, "with constraints give two"),
         (parabolas, {"algorithm": "memetic"}, "a function has none"),
         (lambda x: [1.0, 2.0, 3.0], {}, r"objectives of shape \(3,\), not \(2,\)"),
+        (lambda x: [1.0, [2.0, 3.0]], {}, r"objectives are \[1.0, \[2.0, 3.0\]\]; give numbers"),
+        (parabolas, {"constraints": "wall"}, r"names, such as \['touch'\]"),
+        (parabolas, {"vectorized": "yes"}, "give True for a function of many candidates"),
         (lambda x: [np.nan, 1.0], {}, "no finite numbers"),
         (lambda x: ["one", 1.0], {}, "give numbers"),
         (broken, {}, r"test_functions.py, line \d+\) fails: ZeroDivisionError"),

@@ -52,6 +52,12 @@ def test_running_times_follow_from_what_was_written(results, tmp_path):
         assert stated["evals"] == table[-1, 0] == 300
         assert stated["best"]["y"] == pytest.approx(table[:, 1].min(), abs=1e-9)
         histories.append(History(table[:, 1], table[:, 2], table[:, 0]))
+    (runs_of,) = (results.of(problem.name, "nsga2(population=20)") for problem in results.problems)
+    for (stated, _), run in zip(runs[2], runs_of):
+        entries = run.front.entries
+        place = entries.coefficients.index(tuple(stated["best"]["x"]))
+        later = entries.candidates[place + 1 : place + 2]
+        assert entries.candidates[place] <= stated["best"]["evals"] < min(later, default=1e9)
     assert [stated["instance"] for stated, _ in runs[2]] == [1, 2, 3]
     (name,) = results.problems
     expected = results.expected_running_time(name.name, "nsga2(population=20)", 0.1, "evaluations")

@@ -1,12 +1,13 @@
 """The commands together: names, help, the options of all, plants of one's own, endings."""
 
 import os
+import re
 import signal
 
 import pytest
 from lines import MOVE
 
-from quietarm.metaheuristics import problem_of
+from quietarm.metaheuristics import drawn_problems, problem_of
 from quietarm.models import Plant, SingleLinkManipulator, load_plant_file
 from quietarm.ocp import Front, Plan, PointToPoint, evaluate_coefficients
 from quietarm.studies.cli.application import COMMANDS, command_of
@@ -99,3 +100,20 @@ def test_ctrl_c_while_files_are_written_waits_until_they_are_there(call, folder,
     assert (code, err) == (130, "quietarm: interrupted; wrote o.json, o.csv\n")
     assert out.splitlines()[-2:] == ["wrote o.json", "wrote o.csv"]
     assert sorted(path.name for path in folder.iterdir()) == ["o.csv", "o.json"]
+
+
+def test_drawn_problems_are_listed_by_group_and_say_what_reference_they_have(call):
+    limited = "single-link-m4-6-absolute-torque-tight"
+    code, everything, _ = call("list drawn")
+    assert code == 0
+    listed = set(re.findall(r"[\w-]+-m\d+-[\w-]+", everything))
+    assert listed == set(drawn_problems())
+    _, short, _ = call("list")
+    assert "MOVE-6-absolute-torque-tight" in short
+    assert "`quietarm list drawn` has all names" in " ".join(short.split())
+    assert limited not in short
+    _, one, _ = call(f"list {limited}")
+    # docs/results/limits.csv: a torque limit of 0.7236 N m
+    assert "limits torque 0.723575 N m" in one
+    assert "the gradient finds a reference front" in one
+    assert f"did you mean '{limited}'" in call(f"list {limited[:-1]}")[2]
