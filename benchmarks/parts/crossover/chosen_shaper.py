@@ -19,7 +19,7 @@ from quietarm.ocp.simulation.free_vibration import FreeVibration
 from .integers import IntegerProfile
 
 NO_SHAPER = "none"
-CHOICES = ("zv", "mzv", "zvd", "ei")
+CHOICES = ("zv", "mzv", "zvd")
 LONGEST = 0.7
 """A longer shaper, as a share of the move, leaves too little of it for the motion itself."""
 
@@ -94,16 +94,10 @@ class ChosenShaper(IntegerProfile):
         """Shares of the move at which a polynomial of any shaper begins or ends."""
         del duration
         begins = {begin for shaper in self.impulses for begin in shaper.times}
-        ends = {
-            begin + 1 - shaper.times[-1] for shaper in self.impulses for begin in shaper.times
-        }
+        ends = {begin + 1 - shaper.times[-1] for shaper in self.impulses for begin in shaper.times}
         apart = 1e-9
         places = sorted(place for place in begins | ends if apart < place < 1 - apart)
-        return tuple(
-            place
-            for before, place in pairwise([0.0, *places])
-            if place - before > apart
-        )
+        return tuple(place for before, place in pairwise([0.0, *places]) if place - before > apart)
 
     def angle(self, coefficients: Values, fraction: Expression) -> Expression:
         """Sum of the polynomials that begin at the impulses of the chosen shaper."""
@@ -141,8 +135,6 @@ def chosen_shaper(task: qa.PointToPoint, terms: int) -> ChosenShaper:
     frequency, damping_ratio = min(FreeVibration(task.plant, task.target).modes)
     periods = task.duration * frequency / (2 * pi)
     fitting = [
-        name
-        for name in CHOICES
-        if impulses_of(name, periods, damping_ratio).times[-1] <= LONGEST
+        name for name in CHOICES if impulses_of(name, periods, damping_ratio).times[-1] <= LONGEST
     ]
     return ChosenShaper((NO_SHAPER, *fitting), periods, damping_ratio, terms)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +14,7 @@ import quietarm as qa
 from quietarm.metaheuristics import Job, NamedProblem
 from quietarm.metaheuristics.methods.gradient_methods import gradient_front
 from quietarm.metaheuristics.named_method import NamedMethod
-from quietarm.ocp.front.points import LEVELS, Mark
+from quietarm.ocp.front.points import Mark
 from quietarm.ocp.profiles.joint_profile import JointProfile
 
 
@@ -66,7 +66,7 @@ def search_of_every_number(
     budget: int,
     seed: int,
 ) -> qa.Front:
-    """A method's fronts of all numbers as one front; each number has an equal part of the budget."""
+    """A method's fronts of all numbers as one front, each with an equal part of the budget."""
     fronts = list[qa.Front]()
     for number in range(1, profile.most + 1):
         problem = NamedProblem(
@@ -89,17 +89,12 @@ def with_effort_of_all(front: qa.Front, fronts: Sequence[qa.Front]) -> qa.Front:
 
 
 def scale_of_every_number(
-    task: qa.PointToPoint, profile: IntegerProfile, bound: float
+    task: qa.PointToPoint, profile: IntegerProfile, bound: float, effort: Mapping[str, Any]
 ) -> qa.Front:
     """The quick front that fixes a problem's scale."""
     fronts = [
         qa.epsilon_front(
-            task,
-            profile.alone(number),
-            bound=profile.bound_of(number, bound),
-            points=40,
-            at=LEVELS,
-            starts=12,
+            task, profile.alone(number), bound=profile.bound_of(number, bound), **effort
         )
         for number in range(1, profile.most + 1)
     ]

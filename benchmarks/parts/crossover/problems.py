@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -37,6 +38,11 @@ INTEGERS = ("integer", "shaper")
 ROBUST = {"frequency": 0.05}
 """Errors over which a robust residual is the worst: those that a task with a band has by default.
 """
+
+
+QUICK: Mapping[str, Any] = {"points": 40, "at": LEVELS, "starts": 12}
+QUICKER: Mapping[str, Any] = {"points": 12, "starts": 4}
+"""Effort of the fronts whose ends are a scale: the second of families and shapers."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +145,8 @@ def scale_front(case: Case) -> qa.Front:
     """
     integer = case.integer_profile
     if integer is not None:
-        return scale_of_every_number(case.task, integer, case.bound)
+        effort = QUICKER if case.kind == "shaper" else QUICK
+        return scale_of_every_number(case.task, integer, case.bound, effort)
     profile = case.profile
     if case.peaks:
         return qa.epsilon_front(
@@ -150,9 +157,8 @@ def scale_front(case: Case) -> qa.Front:
             objectives=("residual", "energy", *case.peaks),
         )
     smooth = Case(case.move, case.terms) if case.kind == "motor-map" else case
-    front = qa.epsilon_front(
-        smooth.task, profile, bound=case.bound, points=40, at=LEVELS, starts=12
-    )
+    effort = QUICK if case.family == CENTRE_FAMILY else QUICKER
+    front = qa.epsilon_front(smooth.task, profile, bound=case.bound, **effort)
     if smooth is case:
         return front
     return qa.Front.from_coefficients(
