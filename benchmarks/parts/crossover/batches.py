@@ -47,9 +47,10 @@ class CountedFunction:
         self.sizes.append(len(candidates))
         return self.move(candidates)[0]
 
-    def time_on(self, cores: int) -> int:
-        """Units of time of all calls on so many cores."""
-        return sum(ceil(size / cores) for size in self.sizes)
+
+def time_of(calls: Sequence[int], cores: int) -> int:
+    """Evaluations that follow one another where calls for so many run on so many cores."""
+    return sum(ceil(candidates / cores) for candidates in calls)
 
 
 def write_batches(moves: Sequence[Move], path: Path) -> None:
@@ -77,7 +78,7 @@ def write_batches(moves: Sequence[Move], path: Path) -> None:
                     "candidates": sum(function.sizes),
                     "calls": len(function.sizes),
                     "largest_call": max(function.sizes),
-                    f"time_on_{CORES}_cores": function.time_on(CORES),
+                    f"time_on_{CORES}_cores": time_of(function.sizes, CORES),
                 }
             )
     write_table(pd.DataFrame(rows), path, 10)
