@@ -1,13 +1,12 @@
-"""Two problems that the gradient cannot take as they are: a black box, and an integer.
+"""A black box, which the gradient cannot take as it is, and what it still gives a search.
 
     python benchmarks/black_box.py [--seeds 15]
 
-- The electric energy of a motor known from a map: efficiencies of a table's cells, friction with a
-  sign, braking that is fed back above a speed. A function of arrays without derivatives, and with
-  jumps. The gradient minimises the mechanical energy, eq (11), and its motions are evaluated on the
-  black box; or SLSQP takes differences of it.
-- The number of terms, 1 to 10, beside the coefficients: each term costs half a per cent of the
-  plain cycloid's energy, as if it had to be tuned. The gradient takes one number after another.
+The electric energy of a motor known from a map: efficiencies of a table's cells, friction with a
+sign, braking that is fed back above a speed. A function of arrays without derivatives, and with
+jumps. The gradient minimises the mechanical energy, eq (11), and its motions are evaluated on the
+black box, as they are and as a search's first population; or SLSQP takes differences of it. An
+integer beside the coefficients is an axis of crossover.py.
 
 Each search has 5,000 candidates; what is compiled first is not counted. Missing hypervolume is
 against the best of all runs together.
@@ -43,7 +42,7 @@ MOVES = ("single-link-90deg-1s", "arm-on-flexible-link-90deg-0.8s")
 STEPS, POPULATION = 60, 100
 SEEDS, BUDGET = 15, 5_000
 """Runs of a search, and candidates of each."""
-POINTS, MOST_TERMS, PRICE = 100, 10, 0.005
+POINTS = 100
 TORQUES, SPEEDS = (0.02, 0.05, 0.1, 0.2), (0.5, 1.0, 2.0, 3.5)
 """Edges of the map's cells [N m, rad/s]."""
 EFFICIENCY = np.array([
@@ -110,27 +109,6 @@ class BlackBox(Function):
         return np.column_stack([self.move(rows)[0][:, 0], energy])
 
 
-class Terms(Function):
-    """The number of terms first, the coefficients of ten after it."""
-
-    def __init__(self, problem: NamedProblem) -> None:
-        super().__init__(terms_of(problem, MOST_TERMS))
-        self.price = PRICE * self.move(np.zeros((1, MOST_TERMS)))[0][0, 1]
-        self.lower, self.upper = np.append(0.5, self.lower), np.append(10.49, self.upper)
-
-    def objectives(self, rows: Array) -> Array:
-        """Return residual [m] and cost [J] of rows."""
-        count = np.round(rows[:, :1])
-        found = self.move(np.where(np.arange(MOST_TERMS) < count, rows[:, 1:], 0.0))[0]
-        return found + count * [0.0, self.price]
-
-
-def terms_of(problem: NamedProblem, terms: int) -> NamedProblem:
-    """The move with another number of terms."""
-    profile = qa.CycloidPolynomial(terms)
-    return NamedProblem(f"{problem.name}-{terms}", problem.task, profile, problem.bound)
-
-
 def searched(name: str, function: Function, seed: int, budget: int, first: Any = None) -> None:
     """Search by a method of pymoo with its preset's settings."""
     problem = Problem(
@@ -160,48 +138,39 @@ def begun_there(problem: NamedProblem, function: Function, seed: int, budget: in
     searched("gde3", function, seed, budget, rows)
 
 
-def one_by_one(problem: NamedProblem, function: Function, seed: int, budget: int) -> None:
-    """A front by the gradient for each number of terms."""
-    for terms in range(1, MOST_TERMS + 1):
-        rows = gradient_rows(terms_of(problem, terms), POINTS // 5, seed)
-        padded = np.pad(rows, ((0, 0), (0, MOST_TERMS - terms)))
-        function(np.column_stack([np.full(len(rows), terms), padded]))
-
-
 Way = Callable[[Function, int, int], None]
 
 
-def ways_of(problem: NamedProblem, kind: type[Function]) -> dict[str, Way]:
+def ways_of(problem: NamedProblem) -> dict[str, Way]:
     """Return what is compared, by name."""
-    ways: dict[str, Way] = {
+    searches: dict[str, Way] = {
         PRESETS[name].label: partial(searched, name) for name in ("nsga2", "gde3", "cmopso")
     }
-    if kind is Terms:
-        return ways | {"gradient, a front for each number": partial(one_by_one, problem)}
-    return ways | {
+    return searches | {
         "gradient, mechanical energy": partial(by_gradient, problem),
         "GDE3 from the gradient's front": partial(begun_there, problem),
         "finite-difference SLSQP": partial(slsqp, step=1e-3),
     }
 
 
-def run(problem: NamedProblem, kind: type[Function], way: Way, seed: int, budget: int) -> Any:
+def run(problem: NamedProblem, way: Way, seed: int, budget: int) -> Any:
     """Points that a way finds, and its processor seconds."""
-    function, began = kind(problem), time.process_time()
+    function = BlackBox(problem)
+    began = time.process_time()
     function.left = budget
     with suppress(SpentError):
         way(function, seed, budget)
     return function.points, time.process_time() - began
 
 
-def runs_of(name: str, kind: type[Function], seeds: int) -> dict[str, list[Any]]:
+def runs_of(name: str, seeds: int) -> dict[str, list[Any]]:
     """Points and seconds of every way on one move, by its name and seed."""
     problem = problem_of(name)
-    ways = ways_of(problem, kind)
+    ways = ways_of(problem)
     for way in ways.values():  # what is compiled and loaded first
-        run(problem, kind, way, 99, 3 * POPULATION)
+        run(problem, way, 99, 3 * POPULATION)
     return {
-        label: [run(problem, kind, way, seed, BUDGET) for seed in range(seeds)]
+        label: [run(problem, way, seed, BUDGET) for seed in range(seeds)]
         for label, way in ways.items()
     }
 
@@ -236,16 +205,13 @@ def _hypervolume(points: Sequence[Any] | Array) -> float:
 
 
 def main() -> None:
-    """Print a table for each problem on each move."""
+    """Print a table for each move."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=SEEDS)
     given = parser.parse_args()
-    for kind, words in ((BlackBox, "electric energy"), (Terms, "number of terms")):
-        for name in MOVES:
-            print(f"\n{words}, {name}\n", flush=True)
-            print(
-                compare(runs_of(name, kind, given.seeds)).to_markdown(index=False, floatfmt=".3g")
-            )
+    for name in MOVES:
+        print(f"\nelectric energy, {name}\n", flush=True)
+        print(compare(runs_of(name, given.seeds)).to_markdown(index=False, floatfmt=".3g"))
     print(f"\n{time.process_time():.0f} s")
 
 

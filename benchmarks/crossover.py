@@ -4,6 +4,7 @@
     python benchmarks/crossover.py FOLDER --plan
     python benchmarks/crossover.py FOLDER --tune gde3 [--trials 100] [--budget 5000]
     python benchmarks/crossover.py FOLDER --landscapes
+    python benchmarks/crossover.py FOLDER --batches
     python benchmarks/crossover.py FOLDER --page
 
 Goes on where it stopped, on a new machine, too: what docs/results/runs has is not run again. A run
@@ -49,6 +50,7 @@ def parser() -> argparse.ArgumentParser:
     arguments.add_argument("--trials", type=int, default=100)
     arguments.add_argument("--budget", type=int, default=5_000, help="candidates of a trial")
     arguments.add_argument("--landscapes", action="store_true", help="features of the problems")
+    arguments.add_argument("--batches", action="store_true", help="candidates asked for at once")
     arguments.add_argument("--page", action="store_true", help="write the page of what is there")
     arguments.add_argument("--merge", type=Path, help="results whose rows are added to these")
     return arguments
@@ -72,6 +74,10 @@ def main(typed: list[str] | None = None) -> int:
         merge(options.results, options.merge)
     elif options.landscapes:
         describe(options.folder, options.results)
+    elif options.batches:
+        from parts.crossover.batches import write_batches
+
+        write_batches(read_moves(options.results / "moves.csv"), options.results / "batches.csv")
     elif options.page:
         from parts.crossover.page import write_page
 

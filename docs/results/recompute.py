@@ -59,6 +59,23 @@ INDICATORS = (*MEASURES, "igd+", "epsilon", "energy")
 NO_SUCH_MOTION = 1e3
 """Excess of energy [%] that counts for a front without a motion within 1 mm."""
 LIMITS = ("torque-tight", "torque-loose", "jerk-tight", "jerk-loose")
+FURTHER = {
+    "robust": (CENTRE, "absolute-robust"),
+    "polynomial": (10, "absolute"),
+    "spline": (10, "absolute-spline"),
+    "gaussians": (10, "absolute-gaussians"),
+    "terms": (CENTRE, "integer"),
+    "shaper": (CENTRE, "shaper"),
+}
+"""Further axes: coefficients and kind of their problems."""
+FURTHER_METHODS = ("moead-de", "gde3", "nsga2", DIFFERENCES)
+OF_FURTHER = ("robust", "profiles", "integers", "crossing", "energy")
+"""Tables that have their runs."""
+IN_TURN = f"{DIFFERENCES} in-turn=True"
+"""SLSQP that takes every value of an integer in turn."""
+CORES = 100
+TIMES = (10, 30, 100, 250)
+"""Time on these cores, in evaluations that follow one another."""
 
 
 @dataclass(frozen=True)
@@ -552,6 +569,144 @@ def few_figures(results: Results) -> list[dict[str, Any]]:
                 }
             )
     return figures
+
+
+def further_figures(results: Results) -> dict[str, list[dict[str, Any]]]:
+    """By further axis: for each budget all methods against the gradient, and searches by rival."""
+    figures = dict[str, list[dict[str, Any]]]()
+    for axis, (terms, kind) in FURTHER.items():
+        problems = [name for name in results.problems(terms, kind) if results.control(name)]
+        if axis == "polynomial":  # on the moves of the other families
+            moves = {Problem(name).move for name in results.problems(terms, "absolute-spline")}
+            problems = [name for name in problems if Problem(name).move in moves]
+        figures[axis] = []
+        for budget in (1_000, 10_000):
+            methods = searches_in(results, OF_FURTHER, budget, problems, max(len(problems), 5))
+            methods = [pair for pair in methods if pair[0].split()[0] in (*FURTHER_METHODS, "es")]
+            if not methods:
+                continue
+            rival = IN_TURN if (IN_TURN, budget) in methods else DIFFERENCES
+            searches = [pair for pair in methods if not takes_slopes(pair[0])]
+            figures[axis].append(
+                {
+                    "budget": budget,
+                    "rival": rival,
+                    "methods": compare(results, problems, methods, "between"),
+                    "differences": compare(
+                        results, problems, searches, "between", by_label(results, rival, budget)
+                    ),
+                }
+            )
+    return figures
+
+
+def energy_of_families(results: Results) -> list[dict[str, Any]]:
+    """Energy within 1 mm of each family's fronts over that of the polynomial's by the gradient [%].
+
+    Medians over the moves of all families, with as many coefficients; a front without such a
+    motion counts as infinite.
+    """
+    families = ("polynomial", "spline", "gaussians")
+    names = {
+        family: {Problem(name).move: name for name in results.problems(*FURTHER[family])}
+        for family in families
+    }
+    moves = sorted(set.intersection(*(set(by_move) for by_move in names.values())))
+    figures = list[dict[str, Any]]()
+    for family in families:
+        for label, budget in ((f"{CONTROL} {CONTROL_SETTINGS}", 0), ("moead-de", 10_000)):
+            ratios = [
+                np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
+                / results.control(names["polynomial"][move])[0].energy
+                for move in moves
+                if (runs := results.of(label, budget, names[family][move]))
+            ]
+            if ratios:
+                above = 100 * (float(np.median(ratios)) - 1)
+                figures.append(
+                    {"family": family, "method": label, "moves": len(ratios), "above": above}
+                )
+    return figures
+
+
+def parallel_figures(results: Results) -> dict[str, Any]:
+    """What methods lack after a time on many cores, where every evaluation takes as long.
+
+    A call for so many candidates takes as many evaluations one after another as there are rounds
+    of all cores. A run counts as it stood at its last mark before: 10,000 candidates, then
+    100,000. SLSQP from random starts has as many of them side by side as cores are enough for, and
+    is taken from a run of one after another.
+    """
+    path = results.folder / "batches.csv"
+    if not path.exists():
+        return {}
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    asked = defaultdict[str, list[float]](list)
+    calls = defaultdict[str, list[float]](list)
+    for row in rows:
+        label = f"{row['method']} {row['settings']}".strip()
+        side_by_side = 1
+        if "continuation=False" in label:
+            side_by_side = CORES // int(row["largest_call"])
+        rate = int(row["candidates"]) / int(row[f"time_on_{CORES}_cores"])
+        asked[label].append(side_by_side * rate)
+        calls[label].append(int(row["candidates"]) / int(row["calls"]))
+    candidates = {label: float(np.median(values)) for label, values in asked.items()}
+    long_runs = {run.problem for run in results.runs if run.axis == "large"}
+    problems = [name for name in results.problems() if name in long_runs]
+    figures = dict[str, Any]()
+    for cores, times in ((1, (100, 1_000, 10_000)), (CORES, TIMES)):
+        for time in times:
+            gaps = dict[str, Array]()
+            for label, rate in candidates.items():
+                afforded = time * (rate if cores > 1 else 1.0)
+                values = [gap_after(results, name, label, afforded) for name in problems]
+                if np.isfinite(values).all():
+                    gaps[label] = np.array(values)
+            figures[f"{cores}, {time}"] = {
+                "cores": cores,
+                "time": time,
+                "rows": against_best_differences(gaps),
+            }
+    return {
+        "moves": len(problems),
+        "candidates": candidates,
+        "per_call": {label: float(np.median(values)) for label, values in calls.items()},
+        "times": figures,
+    }
+
+
+def against_best_differences(gaps: Mapping[str, Array]) -> list[dict[str, Any]]:
+    """Medians over moves, and each search against the way of SLSQP with the smaller median."""
+    ways = [label for label in gaps if label.startswith(DIFFERENCES)]
+    rival = min(ways, key=lambda label: float(np.median(gaps[label])))
+    rows = [
+        {
+            "method": label,
+            "missing": float(np.median(values)),
+            "better": int((values < gaps[rival]).sum()),
+            "p": float("nan") if label in ways else signed_ranks(values - gaps[rival]),
+        }
+        for label, values in gaps.items()
+    ]
+    for row, p in zip(rows, holm([row["p"] for row in rows]), strict=True):
+        row["holm"] = p
+    return rows
+
+
+def gap_after(results: Results, problem: str, label: str, candidates: float) -> float:
+    """Gap of 50 points when a method has asked for so many candidates [%], median over seeds.
+
+    NaN where no run is long enough, but for a run of 100,000, which is as long as any.
+    """
+    for budget in (10_000, 100_000):
+        runs = results.of(label, budget, problem)
+        if runs and (candidates <= budget or budget == BUDGETS[-1]):
+            areas = [run.marks[run.marks[:, 0] <= candidates, 2] for run in runs]
+            last = [reached[-1] if len(reached) else 0.0 for reached in areas]
+            return float(np.median([100 * (1 - area / results.whole[problem]) for area in last]))
+    return float("nan")
 
 
 def by_label(results: Results, label: str, budget: int) -> Rival:
@@ -1191,6 +1346,9 @@ def compute(folder: Path) -> dict[str, Any]:
         "noise": noise_figures(results),
         "limits": limit_figures(results),
         "few": few_figures(results),
+        "further": further_figures(results),
+        "families": energy_of_families(results),
+        "parallel": parallel_figures(results),
         "indicators": by_indicator(results, crossed),
         "differences": against_differences(results, crossed),
         "gain": gain_of_coefficients(results, crossed),

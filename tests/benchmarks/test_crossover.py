@@ -20,6 +20,8 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import crossover  # noqa: E402
 from parts.crossover import moves, packed, page, pictures, plan, run  # noqa: E402
+from parts.crossover.batches import time_of  # noqa: E402
+from parts.crossover.chosen_shaper import ChosenShaper  # noqa: E402
 from parts.crossover.plan import Planned  # noqa: E402
 from parts.crossover.problems import Case, read_moves  # noqa: E402
 from parts.crossover.shared_terms import SharedTerms  # noqa: E402
@@ -188,6 +190,30 @@ def test_an_integer_is_the_number_of_terms_that_share_a_box(number):
         for rounded in (number - 0.4, number, number + 0.4):
             share = shared.angle([rounded, *coefficients], fraction)
             assert float(share) == pytest.approx(float(motion), abs=1e-12)
+
+
+@pytest.mark.parametrize(("number", "shaper"), [(1, None), (3, "zvd")])
+def test_an_integer_is_the_shaper_that_a_motion_passes(number, shaper):
+    choice = ChosenShaper(("none", "zv", "zvd"), periods=1.6, damping_ratio=0.02, terms=3)
+    coefficients = [0.05, -0.1, 0.02]
+    duration = 0.8
+    frequency = 2 * np.pi * 1.6 / duration
+    plain = qa.CycloidPolynomial(0)
+    if shaper is not None:
+        shaped = qa.ocp.ShapedCycloid(shaper, (frequency,), (0.02,)).at_duration(duration)
+    for fraction in (0.4, 0.9):
+        chosen = float(choice.angle([number + 0.3, *coefficients], fraction))
+        alone = float(choice.alone(number).angle(coefficients, fraction))
+        assert chosen == pytest.approx(alone, abs=1e-12)
+        at_zero = float(choice.angle([number, 0, 0, 0], fraction))
+        expected = plain.angle([], fraction) if shaper is None else shaped.angle([], fraction)
+        assert at_zero == pytest.approx(float(expected), abs=1e-12)
+
+
+def test_time_on_many_cores_is_the_rounds_of_every_call():
+    calls = [1, 6, 100, 250]
+    assert time_of(calls, 1) == 357
+    assert time_of(calls, 100) == 1 + 1 + 1 + 3
 
 
 def test_choose_repeats_what_the_page_says():

@@ -56,7 +56,7 @@ def energy_of(kind: str, plant: Plant, target: float, duration: float) -> qa.Ene
 
     A stage is half the plain cycloid's mean power; the map's edges are shares of its peaks.
     """
-    if kind in ("absolute", "integer"):
+    if kind in ("absolute", "integer", "shaper"):
         return qa.AbsolutePower()
     if kind == "copper":
         return qa.CopperLoss(0.12)
@@ -70,7 +70,7 @@ def energy_of(kind: str, plant: Plant, target: float, duration: float) -> qa.Ene
     if kind == "motor-map":
         return MotorMap(_three_digits(torque), _three_digits(2 * abs(target) / duration))
     raise ValueError(
-        f"no energy is called {kind!r}; give absolute, copper, stages, motor-map or integer"
+        f"no energy is called {kind!r}; give absolute, copper, stages, motor-map, integer or shaper"
     )
 
 

@@ -18,7 +18,7 @@ from .plan import LADDER
 from .run import plan_table
 from .tables import write_table
 from .verdicts import verdicts
-from .words import short_label, spelled_budget, two_digits, without_noise
+from .words import short_label, signed, spelled_budget, two_digits, without_noise
 
 BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
 END = "<!-- end of what to take -->"
@@ -79,6 +79,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         two=two_digits,
         p=p_value,
         times=times_of,
+        signed=signed,
         without_noise=without_noise,
     )
     moves = pd.read_csv(results / "moves.csv")

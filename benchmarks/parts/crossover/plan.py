@@ -15,11 +15,11 @@ from quietarm.metaheuristics import PRESETS, Job
 
 from .limits import LIMITS
 from .moves import Move
-from .problems import CENTRE_TERMS, Case
+from .problems import CENTRE_FAMILY, CENTRE_TERMS, FAMILIES, INTEGERS, Case
 
 AXES = (
     "centre", "crossing", "limits", "few", "energy", "paper", "noise", "objectives", "large",
-    "tuned", "million",
+    "tuned", "million", "robust", "profiles", "integers",
 )  # fmt: skip
 TERMS = (2, 4, 6, 10, 16, 24)
 BUDGETS = (1_000, 10_000)
@@ -55,6 +55,11 @@ NOISES = (0.01, 0.05)
 NOISY = ("nsga2", "gde3", "moead-de", "mo-cma-es", "slsqp")
 PAPER = {"nsga2-paper": 100_000, "vepso": 40_000}
 """The paper's methods with the paper's candidates."""
+FURTHER = ("moead-de", "gde3", "nsga2", "slsqp")
+"""Methods on moves with a robust residual, other profiles or an integer."""
+FURTHER_ROUNDS = 5
+FAMILY_TERMS = 10
+"""Coefficients of every family of profiles: three Gaussians have as many."""
 AGAIN = 5
 """Evaluations whose mean a search may take where there is noise; each counts."""
 WIDE_STEPS = (0.01, 0.1)
@@ -83,6 +88,9 @@ class Planned:
         Share of residual and energy by which a search sees them wrong, as of `Job`.
     reevaluate : int
         Evaluations of a candidate whose mean counts, as of `Job`.
+    in_turn : bool
+        Whether a search takes every value of an integer in turn, each with an equal part of the
+        candidates.
     """
 
     axis: str
@@ -93,6 +101,7 @@ class Planned:
     settings: tuple[tuple[str, Any], ...] = ()
     noise: float = 0.0
     reevaluate: int = 1
+    in_turn: bool = False
 
     @property
     def key(self) -> tuple[str, str, str, str, int]:
@@ -107,12 +116,19 @@ class Planned:
             stated.append(("reevaluate", self.reevaluate))
         if self.noise:
             stated.append(("noise", self.noise))
+        if self.in_turn:
+            stated.append(("in-turn", True))
         return " ".join(f"{name}={value}" for name, value in stated)
 
     @property
     def takes_every_number(self) -> bool:
-        """Return whether it is the gradient where an integer has to be chosen."""
-        return self.case.has_integer and self.method == "epsilon"
+        """Return whether every value of an integer is taken, as the gradient always does."""
+        return self.in_turn or (self.case.has_integer and self.method == "epsilon")
+
+    @property
+    def of_seed(self) -> str:
+        """Candidates and seed of a search that takes every number, for the name of its file."""
+        return f"-{self.budget}-seed{self.round}" if self.in_turn else ""
 
     def job(self, folder: Path) -> Job:
         """The job of the bench."""
@@ -155,6 +171,7 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         yield from papers(balanced, seed)
         yield from noise(balanced, seed)
         yield from objectives(balanced, seed)
+        yield from further(balanced, seed)
         yield from tuned(tested, tuned_settings, seed)
         yield from large(tested, seed)
         yield from papers(remaining, seed)
@@ -303,6 +320,36 @@ def objectives(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                 yield Planned("objectives", seed, case, method, 10_000)
             for points in GRID if not seed else ():
                 yield Planned("objectives", 0, case, "epsilon", None, (("points", points),))
+
+
+def further(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Robust residuals, families of profiles, and integers of two kinds."""
+    cases = [
+        *(("robust", Case(move, is_robust=True)) for move in moves),
+        *(
+            ("profiles", Case(move, FAMILY_TERMS, family=family))
+            for family in FAMILIES
+            for move in moves
+            if family != CENTRE_FAMILY  # the crossing has the polynomial
+        ),
+        *(("integers", Case(move, kind=kind)) for kind in INTEGERS for move in moves),
+    ]
+    for axis, case in cases if seed < FURTHER_ROUNDS else ():
+        yield from further_of(axis, case, seed)
+
+
+def further_of(axis: str, case: Case, seed: int) -> Iterator[Planned]:
+    """The methods of a case; what the energy axis has of an integer is not planned again."""
+    is_known = case.kind in KINDS
+    if not seed and not is_known:
+        yield Planned(axis, 0, case, "epsilon", None, (("points", 50),))
+    for budget in BUDGETS:
+        for method in FURTHER if (budget == BUDGETS[0] or not is_known) else ():
+            small = budget == BUDGETS[0] and method in AT_FEW
+            yield Planned(axis, seed, case, method, budget, SMALL_POPULATION if small else ())
+        if case.has_integer:
+            yield Planned(axis, seed, case, "slsqp", budget, in_turn=True)
+    yield Planned(axis, seed, case, "es", BUDGETS[0])
 
 
 def tuned(tested: Sequence[Move], settings: Settings, seed: int) -> Iterator[Planned]:

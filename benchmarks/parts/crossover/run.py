@@ -12,11 +12,11 @@ import pandas as pd
 import quietarm as qa
 from quietarm.metaheuristics import Job, LostJobsError, run_jobs
 
+from .integers import front_of_every_number, search_of_every_number
 from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
 from .plan import AXES, Planned, first_of_plants, rounds
 from .problems import CENTRE_TERMS, read_moves
-from .shared_terms import front_of_every_number
 from .tables import best_settings, write_table
 
 TUNED_WITH = 5_000
@@ -139,18 +139,26 @@ def run_jobs_of(
 
 
 def front_by_every_number(planned: Planned, folder: Path) -> qa.Front:
-    """The gradient where an integer has to be chosen: a front for each of its values."""
+    """The front of a method that takes every value of an integer in turn."""
     case = planned.case
-    path = folder / "every-number" / f"{case.name}-{planned.words}.json"
+    profile = case.integer_profile
+    if profile is None:
+        raise ValueError(f"{case.name} has no integer")
+    name = case.name if not planned.in_turn else f"{planned.method}-{case.name}"
+    path = folder / "every-number" / f"{name}-{planned.words}{planned.of_seed}.json"
     if path.exists():
         return qa.Front.load(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    task = case.task
-    terms = case.terms - 1
-    points = dict(planned.settings)["points"]
-    rehearsal = 3  # points: what is compiled first is no part of the effort
-    front_of_every_number(task, terms, case.move.bound, rehearsal)
-    front = front_of_every_number(task, terms, case.move.bound, points)
+    if planned.in_turn:
+        budget = planned.budget or 0
+        front = search_of_every_number(
+            case.task, profile, case.bound, planned.method, budget, planned.round
+        )
+    else:
+        points = dict(planned.settings)["points"]
+        rehearsal = 3  # points: what is compiled first is no part of the effort
+        front_of_every_number(case.task, profile, case.bound, rehearsal)
+        front = front_of_every_number(case.task, profile, case.bound, points)
     front.save(path)
     return front
 

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 import quietarm as qa
-from quietarm.metaheuristics.methods.gradient_methods import gradient_front
-from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.models import Expression
-from quietarm.ocp.front.points import LEVELS, Mark
 from quietarm.ocp.profiles.cycloid import Cycloid
 from quietarm.ocp.profiles.joint_profile import Values
+
+from .integers import IntegerProfile
 
 SHARED = 3.0
 """Boxes that the terms share: with one, few moves come to rest, and one number is best throughout;
@@ -23,7 +21,7 @@ with three, fronts have motions of two to four numbers."""
 
 
 @dataclass(frozen=True)
-class SharedTerms(Cycloid):
+class SharedTerms(IntegerProfile, Cycloid):
     """The paper's polynomial; the first coefficient is the number of its terms, rounded."""
 
     name = "shared-terms"
@@ -33,6 +31,24 @@ class SharedTerms(Cycloid):
     def size(self) -> int:
         """The number and the most coefficients."""
         return 1 + self.terms
+
+    @property
+    def most(self) -> int:
+        """The most terms."""
+        return self.terms
+
+    def alone(self, number: int) -> qa.CycloidPolynomial:
+        """The polynomial of so many terms."""
+        return qa.CycloidPolynomial(number)
+
+    def bound_of(self, number: int, bound: float) -> float:
+        """A term's share of the boxes."""
+        return SHARED * bound / number
+
+    def rows_of(self, number: int, coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The number, its coefficients as shares, and nothing for the terms beyond."""
+        shares = coefficients * number / SHARED
+        return super().rows_of(number, np.pad(shares, ((0, 0), (0, self.terms - number))))
 
     @property
     def plain(self) -> NDArray[np.float64]:
@@ -52,54 +68,3 @@ class SharedTerms(Cycloid):
             for place, coefficient in enumerate(coefficients[1:], start=1)
         ]
         return qa.CycloidPolynomial(self.terms).input(shares, fraction)
-
-
-def front_of_every_number(task: qa.PointToPoint, terms: int, bound: float, points: int) -> qa.Front:
-    """The gradient's fronts of all numbers as one front, whose effort is that of all of them."""
-    fronts = [
-        gradient_front(
-            task,
-            qa.CycloidPolynomial(number),
-            NamedMethod("epsilon"),
-            bound=SHARED * bound / number,
-            seed=0,
-            settings={"points": points},
-        )
-        for number in range(1, terms + 1)
-    ]
-    efforts = [front.history[-1] for front in fronts]
-    effort = Mark(
-        sum(mark.evaluations for mark in efforts),
-        seconds=sum(mark.seconds for mark in efforts),
-        gradients=sum(mark.gradients for mark in efforts),
-        hessians=sum(mark.hessians for mark in efforts),
-    )
-    return replace(merged(task, terms, bound, fronts), history=(effort,))
-
-
-def scale_of_every_number(task: qa.PointToPoint, terms: int, bound: float) -> qa.Front:
-    """The quick front that fixes a problem's scale."""
-    fronts = [
-        qa.epsilon_front(
-            task,
-            qa.CycloidPolynomial(number),
-            bound=SHARED * bound / number,
-            points=40,
-            at=LEVELS,
-            starts=12,
-        )
-        for number in range(1, terms + 1)
-    ]
-    return merged(task, terms, bound, fronts)
-
-
-def merged(task: qa.PointToPoint, terms: int, bound: float, fronts: Sequence[qa.Front]) -> qa.Front:
-    """Fronts of one term, two and so on as one front."""
-    rows = list[NDArray[np.float64]]()
-    for number, front in enumerate(fronts, start=1):
-        shares = np.clip(front.coefficients * number / SHARED, -bound, bound)
-        padded = np.pad(shares, ((0, 0), (0, terms - number)))
-        rows.append(np.column_stack([np.full(len(padded), number), padded]))
-    return qa.Front.from_coefficients(
-        task, np.vstack(rows), method="epsilon", profile=SharedTerms(terms), bound=bound
-    )

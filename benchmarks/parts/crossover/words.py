@@ -19,6 +19,7 @@ LABELS = {
     "moead-de reevaluate=5": "MOEA/D-DE, five evaluations",
     "slsqp": "SLSQP",
     "slsqp continuation=False": "SLSQP, random starts",
+    "slsqp in-turn=True": "SLSQP, every integer in turn",
     "slsqp step=0.01": "SLSQP, steps of 1 % of the box",
     "tpe": "TPE of Optuna",
     "slsqp step=0.1": "SLSQP, steps of 10 % of the box",
@@ -53,6 +54,15 @@ def two_digits(value: float | None) -> str:
     if magnitude >= 10:
         return f"{value:.0f}"
     return f"{value:.1f}" if magnitude >= 1 else f"{value:.2g}"
+
+
+def signed(value: float) -> str:
+    """Two digits with a sign, as of a difference; none if it is infinite."""
+    return (
+        two_digits(value)
+        if value in (0, float("inf"))
+        else f"{'+' if value > 0 else '-'}{two_digits(abs(value))}"
+    )
 
 
 def without_noise(method: str) -> str:
