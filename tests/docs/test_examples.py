@@ -53,7 +53,7 @@ STARTED = "README-0"
 
 
 def started(*words):
-    """Return the output of a process that ends well and says nothing else but that it still runs."""
+    """Return the output of a process that ends well and says at most that it still runs."""
     ran = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=600)
     said = [line for line in ran.stderr.splitlines() if not line.startswith("still looking for ")]
     assert (ran.returncode, said) == (0, [])
