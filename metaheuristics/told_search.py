@@ -325,8 +325,9 @@ class Search:
 
     def _table(self, what: str, values: Any, count: int, names: Sequence[str]) -> Array:
         """Values as a table with a row for each candidate."""
-        if not names:
-            if np.size(values if values is not None else ()) and not np.isnan(values).all():
+        if not names:  # objectives have some
+            given = numbers(what, () if values is None else values, "none", infinite=True)
+            if not np.isnan(given).all():
                 raise ValueError(f"the search has no {what}; leave them out, or name constraints")
             return np.empty((count, 0))
         wanted = f"{', '.join(names) or 'none'} of each candidate"

@@ -351,8 +351,10 @@ def name_of(function: Function) -> str:
 
 
 def _said(vectorized: Any) -> bool | None:
-    if vectorized is None or isinstance(vectorized, bool | np.bool_):
-        return vectorized
+    if vectorized is None:
+        return None
+    if isinstance(vectorized, bool | np.bool_):
+        return bool(vectorized)
     raise ValueError(
         f"vectorized is {quoted(vectorized)}; give True for a function of many candidates, or "
         "False for one of a single candidate"
