@@ -196,6 +196,7 @@ class Search:
         self._values: list[Told | None] = []
         self._failure: BaseException | None = None
         self._over = False
+        self._closed = False
         threading.Thread(target=self._exchange.work, args=(self._run,), daemon=True).start()
         self._go_on()
 
@@ -224,7 +225,7 @@ class Search:
             One candidate, shape (coefficients,), None at the end. With `most` a table with a row
             for each, shape (candidates, coefficients), empty at the end.
         """
-        self._raise_failure()
+        self._refuse_if_closed()
         rows = self._pending[[told is None for told in self._values]]
         if most is not None:
             return rows[: whole("most", most, 1)].copy()
@@ -249,7 +250,7 @@ class Search:
         ValueError
             When a candidate was not asked for, or is told already, or a shape is another.
         """
-        self._raise_failure()
+        self._refuse_if_closed()
         function = self._state.function
         rows = table_of(np.atleast_2d(numbers("candidates", candidates, "numbers")), function.size)
         count = len(rows)
@@ -286,7 +287,11 @@ class Search:
         return self._run.front()
 
     def close(self) -> None:
-        """End the method's thread; what was told is in the file, if there is one."""
+        """End the method's thread; what was told is in the file, if there is one.
+
+        Nothing can be asked or told afterwards; `front` has what was found until then.
+        """
+        self._closed = True
         self._exchange.close()
 
     def __del__(self) -> None:
@@ -320,7 +325,10 @@ class Search:
 
     def _table(self, what: str, values: Any, count: int, names: Sequence[str]) -> Array:
         """Values as a table with a row for each candidate."""
-        if values is None and not names:
+        if not names:  # objectives have some
+            given = numbers(what, () if values is None else values, "none", infinite=True)
+            if not np.isnan(given).all():
+                raise ValueError(f"the search has no {what}; leave them out, or name constraints")
             return np.empty((count, 0))
         wanted = f"{', '.join(names) or 'none'} of each candidate"
         if values is None:
@@ -390,6 +398,12 @@ class Search:
                     "another file"
                 )
         return True
+
+    def _refuse_if_closed(self) -> None:
+        """Refuse to ask or tell a search that is closed: its method would never answer."""
+        self._raise_failure()
+        if self._closed:
+            raise ValueError("the search is closed; make a new one, of the same state to go on")
 
     def _raise_failure(self) -> None:
         if self._failure is not None:

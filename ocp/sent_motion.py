@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.models import JointMotion
-from quietarm.ocp.checks import not_negative, positive, takes, whole
+from quietarm.ocp.checks import not_negative, positive, takes
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.task import PointToPoint
 
@@ -60,6 +60,7 @@ def motion_of(
         Time between samples [s].
     after : float
         How long the joint stands at its target behind the move [s], while the residual is measured.
+        The last sample is at this time or the next one behind it, so that the target is reached.
 
     Returns
     -------
@@ -74,7 +75,13 @@ def motion_of(
     most = 10_000_000
     duration = task.duration + not_negative("after", after, "s")
     interval = positive("step", step, "s")
-    samples = whole("samples", math.floor(duration / interval + 1e-9), 1, most) + 1
+    intervals = math.ceil(duration / interval - 1e-9)
+    if interval > duration or intervals > most:
+        raise ValueError(
+            f"step is {interval:g} s, and the motion takes {duration:g} s; give from "
+            f"{duration / most:.2g} to {duration:g} s"
+        )
+    samples = intervals + 1
     time: Array = np.arange(samples, dtype=float) * np.float64(interval)
     path = profile.path(coefficients, *task.move)
     along = [path(time, order) for order in range(3)]

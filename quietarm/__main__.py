@@ -17,8 +17,17 @@ def main() -> None:
 
 
 def _run() -> int:
-    from quietarm.studies.cli.application import run_as_process
-
+    try:
+        from quietarm.studies.cli.application import run_as_process
+    except ModuleNotFoundError as error:
+        if (error.name or "quietarm").partition(".")[0] == "quietarm":
+            raise
+        print(
+            f"quietarm: the command needs {error.name}, and this is a light installation of the "
+            "problems; install quietarm with all that it needs",
+            file=sys.stderr,
+        )
+        return 2
     return run_as_process()
 
 

@@ -67,7 +67,7 @@ class DrawnMove:
 
     @property
     def energy(self) -> Energy:
-        """What counts as energy."""
+        """The energy that the move is judged by."""
         return ENERGIES[self.kind]
 
     @property

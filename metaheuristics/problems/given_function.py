@@ -33,7 +33,7 @@ _ALL_FAILED = 20
 """A function that gives no finite number for so many first candidates is refused."""
 
 
-class _FunctionFailedError(ValueError):
+class FunctionFailedError(ValueError):
     """A user's own function raises an error, which is the cause of this one."""
 
 
@@ -121,7 +121,7 @@ class GivenFunction(ProblemFunction):
         self.threads = whole("threads", threads, 1, 1_000)
         self._function = function
         self._vectorized = _said(stated("vectorized", vectorized))
-        self._failed_at_first: int | None = 0
+        self._first_failures = FirstFailures()
 
     @property
     def of_model(self) -> bool:
@@ -139,7 +139,7 @@ class GivenFunction(ProblemFunction):
         if len(table):
             values = self._values(table)
         failed = replace_failures(values)
-        self._refuse_all_failed(failed)
+        self._first_failures.note(self._name, failed)
         count = len(self.objectives)
         return values[:, :count].copy(), values[:, count:].copy()
 
@@ -188,7 +188,7 @@ class GivenFunction(ProblemFunction):
         """Values of the first candidate; from now on it is known how the function is called."""
         try:
             result = self._called(row[0].copy())
-        except _FunctionFailedError as alone:
+        except FunctionFailedError as alone:
             if not isinstance(alone.__cause__, IndexError | TypeError | ValueError):
                 raise
             return self._as_array(row, alone)
@@ -198,7 +198,7 @@ class GivenFunction(ProblemFunction):
         self._vectorized = of_many
         return self._rows_of(*result, 1) if of_many else self._row_of(*result)
 
-    def _as_array(self, row: Array, alone: _FunctionFailedError | None = None) -> Array:
+    def _as_array(self, row: Array, alone: FunctionFailedError | None = None) -> Array:
         """Values of the first candidate by a call with an array of one row."""
         try:
             values = self._many(row)
@@ -222,7 +222,7 @@ class GivenFunction(ProblemFunction):
         return self._row_of(*self._called(row.copy()))
 
     def _rows_of(self, objectives: Any, violations: Any, count: int) -> Array:
-        """What was returned of many candidates, as a table."""
+        """Make a table of what was returned of many candidates."""
         if len(self.constraints) == 1 and _dimensions(violations) == 1:
             violations = [[value] for value in violations]  # one number for each candidate
         return np.column_stack(
@@ -233,7 +233,7 @@ class GivenFunction(ProblemFunction):
         )
 
     def _row_of(self, objectives: Any, violations: Any) -> Array:
-        """What was returned of one candidate, as a table of one row."""
+        """Make a table of one row of what was returned of one candidate."""
         if violations is not None and np.ndim(violations) == 0:
             violations = [violations]
         values = [
@@ -247,7 +247,7 @@ class GivenFunction(ProblemFunction):
         try:
             result = self._function(argument)
         except Exception as error:
-            raise self._failed(error) from error
+            raise failure_of(self._name, self._function, error) from error
         if isinstance(result, tuple) and len(result) == 2 and self._is_pair(result):
             return result
         if self.constraints and _is_nan(result):
@@ -288,37 +288,45 @@ class GivenFunction(ProblemFunction):
             )
         return table
 
-    def _failed(self, error: Exception) -> _FunctionFailedError:
-        """The function's own error, in one line with its place."""
-        code = getattr(self._function, "__code__", None)
-        file = code.co_filename if code else getattr(
-            sys.modules.get(type(self._function).__module__), "__file__", None
-        )  # fmt: skip
-        frames = traceback.extract_tb(error.__traceback__)
-        lines = [frame.lineno for frame in frames if frame.filename == file]
-        place = f" ({file}, line {lines[-1]})" if lines else ""
-        return _FunctionFailedError(
-            f"{self._name}{place} fails: {words_of_error(error)}; mend it, or return nan for a "
-            "candidate that cannot be evaluated"
-        )
-
     @property
     def _name(self) -> str:
         return f"function {clipped(self.searched.name)}"
 
-    def _refuse_all_failed(self, failed: NDArray[np.bool_]) -> None:
-        """Refuse a function whose first candidates all fail, rather than search for hours."""
-        if self._failed_at_first is None or not len(failed):
+
+class FirstFailures:
+    """Failures of the first candidates: if all fail, a search is refused, not run for hours."""
+
+    def __init__(self) -> None:
+        self._count: int | None = 0
+
+    def note(self, name: str, failed: NDArray[np.bool_]) -> None:
+        """Count failures until a candidate is fine; ValueError where there are too many."""
+        if self._count is None or not len(failed):
             return
         if not failed.all():
-            self._failed_at_first = None
+            self._count = None
             return
-        self._failed_at_first += len(failed)
-        if self._failed_at_first >= _ALL_FAILED:
+        self._count += len(failed)
+        if self._count >= _ALL_FAILED:
             raise ValueError(
-                f"{self._name} gives no finite numbers (nan or infinite) for the first "
-                f"{self._failed_at_first} candidates; mend it, or give other bounds"
+                f"{name} gives no finite numbers (nan or infinite) for the first {self._count} "
+                "candidates; mend it, or give other bounds"
             )
+
+
+def failure_of(name: str, function: Function, error: Exception) -> FunctionFailedError:
+    """A user's function's own error, in one line with its place."""
+    code = getattr(function, "__code__", None)
+    file = code.co_filename if code else getattr(
+        sys.modules.get(type(function).__module__), "__file__", None
+    )  # fmt: skip
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == file]
+    place = f" ({file}, line {lines[-1]})" if lines else ""
+    return FunctionFailedError(
+        f"{name}{place} fails: {words_of_error(error)}; mend it, or return nan for a candidate "
+        "that cannot be evaluated"
+    )
 
 
 def _dimensions(value: Any) -> int:
@@ -343,8 +351,10 @@ def name_of(function: Function) -> str:
 
 
 def _said(vectorized: Any) -> bool | None:
-    if vectorized is None or isinstance(vectorized, bool | np.bool_):
-        return vectorized
+    if vectorized is None:
+        return None
+    if isinstance(vectorized, bool | np.bool_):
+        return bool(vectorized)
     raise ValueError(
         f"vectorized is {quoted(vectorized)}; give True for a function of many candidates, or "
         "False for one of a single candidate"

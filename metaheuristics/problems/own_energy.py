@@ -15,11 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from quietarm.metaheuristics.evaluation.population import search_steps
 from quietarm.metaheuristics.problems.function import MoveFunction
-from quietarm.metaheuristics.problems.given_function import GivenFunction, name_of
+from quietarm.metaheuristics.problems.given_function import (
+    FirstFailures,
+    GivenFunction,
+    failure_of,
+    name_of,
+)
 from quietarm.metaheuristics.problems.problem_function import Rows
 from quietarm.models.dimensions import TIP, WAY, Words
 from quietarm.ocp import Front, JointProfile, PointToPoint
-from quietarm.ocp.checks import numbers, words_of_error
+from quietarm.ocp.checks import numbers
 from quietarm.ocp.front.points import Entries, FrontPoint
 from quietarm.ocp.limits import QUANTITIES, Quantity
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, with_peaks_measured
@@ -107,10 +112,13 @@ class OwnEnergyFunction(MoveFunction):
     ) -> None:
         super().__init__(task, profile, bound=bound, objectives=objectives, threads=threads)
         if not callable(energy):
-            raise TypeError(f"energy is {energy!r}; give a function of MoveSamples")
+            raise TypeError(
+                f"energy is {energy!r}; give a function of MoveSamples, or an Energy to the task"
+            )
         self.move = task
         self.of_profile = self.profile
         self._energy = energy
+        self._first_failures = FirstFailures()
         self._shown = GivenFunction(
             energy,
             lower=self.lower,
@@ -146,15 +154,16 @@ class OwnEnergyFunction(MoveFunction):
 
     def _energies(self, evaluation: Evaluation) -> Array:
         samples = samples_of(evaluation, self.move.duration)
-        name = name_of(self._energy)
+        name = f"energy {name_of(self._energy)}"
         try:
             energies = self._energy(samples)
         except Exception as error:
-            raise ValueError(f"energy {name} fails: {words_of_error(error)}; mend it") from error
+            raise failure_of(name, self._energy, error) from error
         wanted = f"one energy for each of {len(evaluation.energy)} candidates"
-        values = numbers(f"energy {name}", energies, wanted, infinite=True)
+        values = numbers(name, energies, wanted, infinite=True)
         if values.shape != (len(evaluation.energy),):
-            raise ValueError(f"energy {name} has shape {values.shape}; give {wanted}")
+            raise ValueError(f"{name} has shape {values.shape}; give {wanted}")
+        self._first_failures.note(name, ~np.isfinite(values))
         return values
 
     @property

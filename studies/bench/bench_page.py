@@ -21,6 +21,7 @@ from quietarm.studies.bench.results import (
     Results,
     bench_label,
     column_of,
+    derivative_free,
     quartiles,
 )
 from quietarm.studies.bench.statistics import (
@@ -78,6 +79,9 @@ def bench_report(
         "evaluations.png": partial(curves_figure, results, "evaluations"),
         "profiles.png": partial(profiles_figure, results),
     }
+    counted = any(map(derivative_free, results.methods))
+    if counted:
+        figures["profiles_candidates.png"] = partial(profiles_figure, results, "evaluations")
     if ranking is not None:
         ranks = pd.DataFrame({"method": ranking.methods, "mean rank": ranking.ranks})
         tables["ranks"] = _with_labels(ranks, "method")
@@ -85,6 +89,7 @@ def bench_report(
     versions = results.runs[0].front.record.versions
     values = {
         "line": line,
+        "counted": counted,
         "problems": problems,
         "of_problem": of_problem,
         "methods": [bench_label(m) for m in results.methods],

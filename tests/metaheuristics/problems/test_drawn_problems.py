@@ -64,7 +64,7 @@ import sys
 class Blocked:
     def find_spec(self, name, path=None, target=None):
         if name.partition(".")[0] in {blocked}:
-            raise ImportError(f"{{name}} is not in a light installation")
+            raise ModuleNotFoundError(f"{{name}} is not installed", name=name)
 
 
 sys.meta_path.insert(0, Blocked())
@@ -75,6 +75,9 @@ for name in ("{name}", "single-link-30deg-0.8s"):
     problem = problem_of(name)
     print(problem.function()(np.zeros((1, 6)))[0].shape)
 print(len(problem.front().points) > 200)
+from quietarm.__main__ import main
+
+main()
 """
 
 
@@ -94,7 +97,9 @@ def test_the_problems_need_no_more_than_their_group():
     blocked = sorted(imports.get(name, name) for name in set(every) - set(light))
     script = BLOCKED.format(blocked=blocked, name=LIMITED)
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert (done.stdout, done.stderr) == ("(1, 2)\n(1, 2)\nTrue\n", "")
+    assert (done.returncode, done.stdout) == (2, "(1, 2)\n(1, 2)\nTrue\n")
+    assert done.stderr.startswith("quietarm: the command needs click, and this is a light install")
+    assert done.stderr.count("\n") == 1
 
 
 def test_the_page_installs_the_group():

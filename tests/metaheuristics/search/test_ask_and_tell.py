@@ -108,6 +108,23 @@ def test_a_candidate_is_asked_for_until_it_is_told_and_failures_are_counted():
     assert search.front().failed == 1
 
 
+def test_a_closed_search_is_asked_and_told_nothing():
+    closed = search_of()
+    first, *others = closed.ask(9)
+    closed.tell(first, *measure(first))
+    closed.close()
+    # the last of these would hand all of them over to a method that has ended, and wait for ever
+    for ask_or_tell in (closed.ask, lambda: closed.tell(others, [[1.0, 2.0]] * len(others))):
+        with pytest.raises(ValueError, match="the search is closed"):
+            ask_or_tell()
+
+
+def test_violations_where_there_are_no_constraints_are_refused():
+    free = qa.Search([-5, -5], 5, evaluations=10, algorithm="es")
+    with pytest.raises(ValueError, match="the search has no violations; leave them out"):
+        free.tell(free.ask(), [1.0, 2.0], [0.5])
+
+
 @pytest.mark.parametrize(
     ("told", "words"),
     [

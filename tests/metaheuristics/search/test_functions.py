@@ -277,10 +277,16 @@ def test_an_energy_in_numpy_is_that_of_the_simulated_samples():
 
     front = qa.search(SIXTH, profile, bound=0.2, energy=sway, evaluations=60, population=10)
     assert front.task.name == "sway of single-link"
-    with pytest.raises(ValueError, match="give one energy for each of"):
-        qa.search(
-            SIXTH, profile, bound=0.2, energy=lambda s: s.power, evaluations=20, population=10
-        )
+    refused = {
+        "give one energy for each of": lambda samples: samples.power,
+        r"test_functions.py, line \d+\) fails: ZeroDivisionError": lambda samples: 1 / 0,
+        "no finite numbers": lambda samples: np.full(len(samples.torque), np.nan),
+    }
+    for words, energy in refused.items():
+        with pytest.raises(ValueError, match=words):
+            qa.search(SIXTH, profile, bound=0.2, energy=energy, evaluations=20, population=10)
+    with pytest.raises(TypeError, match="an Energy to the task"):
+        qa.search(SIXTH, profile, bound=0.2, energy=qa.CopperLoss(0.1), evaluations=20)
 
 
 def test_the_path_of_a_candidate_is_that_of_its_plan():
@@ -291,8 +297,12 @@ def test_the_path_of_a_candidate_is_that_of_its_plan():
     of_plan = plan.candidate.sample(sent.time[1:400]).joint
     np.testing.assert_allclose(sent.angle[1:400], of_plan[:, 0], atol=1e-9)
     np.testing.assert_allclose(sent.acceleration[1:400], of_plan[:, 2], atol=1e-6)
-    assert sent.angle[-1] == pytest.approx(SIXTH.target)
-    assert sent.speed[-1] == 0.0
+    for at_end in (sent, qa.motion_of(SIXTH, profile, [0.1, -0.05], step=3e-3)):
+        assert at_end.angle[-1] == pytest.approx(SIXTH.target)  # 0.8 s are no multiple of 3 ms
+        assert at_end.speed[-1] == 0.0
+    for step in (5.0, 1e-12):
+        with pytest.raises(ValueError, match=f"step is {step:g} s, and the motion takes 0.8 s"):
+            qa.motion_of(SIXTH, profile, [0.1, -0.05], step=step)
 
 
 def test_a_surrogate_finds_with_few_candidates_what_others_do_not():

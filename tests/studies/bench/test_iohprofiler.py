@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from quietarm.metaheuristics import Job, NamedProblem, problem_of
+from quietarm.studies.bench.bench_pictures import profiles_figure
 from quietarm.studies.bench.iohprofiler import write_iohprofiler
 from quietarm.studies.bench.results import Results
 from quietarm.studies.bench.running_times import History, expected_running_time
@@ -62,6 +63,14 @@ def test_running_times_follow_from_what_was_written(results, tmp_path):
     (name,) = results.problems
     expected = results.expected_running_time(name.name, "nsga2(population=20)", 0.1, "evaluations")
     assert expected_running_time(histories, 0.1, "evaluations") == expected
+
+
+def test_runtime_profiles_are_over_candidates_per_coefficient(results):
+    (line,) = profiles_figure(results, "evaluations").axes[0].lines
+    assert line.get_xdata()[-1] == pytest.approx(300 / 2)  # candidates over coefficients
+    least = np.array([np.nanmin(run.history.missing) for run in results.runs])
+    targets = np.geomspace(1.0, 1e-3, 51)
+    assert line.get_ydata()[-1] == pytest.approx((targets >= least[:, None]).mean())
 
 
 @pytest.mark.slow
