@@ -296,20 +296,27 @@ def figure_12() -> str:
         hinges = in_mujoco.add_bar("panda_hand", **bar)
         return Truth(in_mujoco, robot.joints, bar["damping"], hinges, held=robot.held)
 
-    return f"Panda, {_with_loads(task, truth)}"
+    # by default 0.11 mm, 5 % of the cycloid's largest deflection, which is 34 % of what the cycloid
+    # leaves with 90 % of the load
+    return f"Panda, {_with_loads(task, truth, residual_limit=0.08e-3)}"
 
 
-def _with_loads(task: qa.PointToPoint, truth: Callable[[float], Truth]) -> str:
+def _with_loads(
+    task: qa.PointToPoint, truth: Callable[[float], Truth], residual_limit: float | None = None
+) -> str:
     """Say what a robust plan, a plan for one load, and the cycloid leave with other loads."""
     plans = {
-        "plan with errors": qa.plan_move(task, qa.CycloidPolynomial(8)),
+        "plan with errors": qa.plan_move(
+            task, qa.CycloidPolynomial(8), residual_limit=residual_limit
+        ),
         "plan without": qa.plan_move(task.certain),
         "cycloid": qa.evaluate_coefficients(task.certain, []),
     }
     left = {
         name: [measured(plan, truth(load))[0] for load in LOADS] for name, plan in plans.items()
     }
-    share = max(left["plan with errors"]) / max(left["cycloid"][0], left["cycloid"][-1])
+    pairs = zip(left["plan with errors"], left["cycloid"])
+    share = max(robust / cycloid for robust, cycloid in pairs)  # load by load
     words = [
         f"{name} ({plans[name].energy:.2f} J) {', '.join(f'{one:.3g}' for one in row)} mm"
         for name, row in left.items()

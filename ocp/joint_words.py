@@ -120,10 +120,12 @@ def peaks_beyond(limit: Limit, motion: JudgedMotion, tolerance: float = 0.0) -> 
 
     A plant of one joint has none, nor has a limit of another thing than the joints.
     """
-    if ask_for_jerk([limit.quantity]) and not motion.path.has_jerk:
-        return []  # the acceleration jumps
+    plant = motion.task.plant
+    jumps = ask_for_jerk([limit.quantity]) and not motion.path.has_jerk  # the acceleration does
+    if jumps or not limit.bounds_of_joints(plant):
+        return []
     ranges = motion.ranges_of_joints(limit.quantity)
-    return beyond(joint_peaks(limit, motion.task.plant, ranges), tolerance)
+    return beyond(joint_peaks(limit, plant, ranges), tolerance)
 
 
 def beyond(peaks: Sequence[JointPeak], tolerance: float = 0.0) -> list[JointPeak]:

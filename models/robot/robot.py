@@ -248,8 +248,9 @@ class Robot(CheckedRobot):
             beyond = np.maximum(column - most, least - column)
             if beyond.max() > _OVER:
                 at = int(beyond.argmax())
+                value = round(float(column[at]), 9) + 0.0  # without the spline's rounding
                 raise ValueError(
-                    f"joint {quoted(name)} is at {column[at]:.5g} at s = {places[at]:.3g} of the "
+                    f"joint {quoted(name)} is at {value:.5g} at s = {places[at]:.3g} of the "
                     f"path; its range is {least:g} to {most:g}{self._with_followers(name)}, give a "
                     f"path within it{self.unit_words(name, column[at])}"
                 )

@@ -16,6 +16,7 @@ from several_joints import Gantry, TwoLinks
 import quietarm as qa
 from quietarm.ocp import PositivePower
 from quietarm.ocp.joint_words import broken_limits, passed_words, peak_words
+from quietarm.ocp.limits import Limit
 
 LINKS = qa.PointToPoint(TwoLinks(), target=1.0, duration=0.6)
 GANTRY = qa.PointToPoint(Gantry(), target=0.5, duration=0.7)
@@ -178,6 +179,8 @@ def test_a_limit_that_is_passed_is_told_with_its_joint(limit):
     assert peak_words(asked, motion) == " and ".join(words)
     assert passed_words(asked, motion).startswith(f"{words[0]}, above its limit of 6 N m")
     assert broken_limits(motion, [asked], 1e-3) == [f"torque at {', '.join(passed)}"]
+    residual = Limit.of_residual(1e-3)  # of no joint
+    assert peak_words(residual, motion) == f"{motion.residual:.4g} m"
 
 
 @pytest.mark.slow

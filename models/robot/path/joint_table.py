@@ -236,7 +236,7 @@ _DECIMAL_POINT = re.compile(r"\s*[+-]?\d*\.\d+(?:[eE][+-]?\d+)?\s*")
 
 
 def _separator(lines: list[str]) -> str | None:
-    """What separates the cells of a table; None of white space, also between decimal commas."""
+    """Return the mark between the cells of a table; None for white space."""
     mark = next((mark for mark in ";\t," if mark in lines[0]), None)
     cells = lines[-1].split()
     spaced = len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells)

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import replace
 from functools import lru_cache
 from types import SimpleNamespace
 
@@ -17,6 +18,7 @@ from quietarm.studies.compare.plan_comparison import motions_table
 from quietarm.views import pictures
 from quietarm.views.formats.csv_rows import CsvRows
 from quietarm.views.formats.formats import export_plan
+from quietarm.views.report.first_lines import plan_answer
 from quietarm.views.report.plan_rows import plan_rows
 from quietarm.views.report.robot_rows import robot_rows
 
@@ -55,6 +57,15 @@ def test_rows_of_a_gantry_are_in_metres_and_newtons(plan_of):
     assert "force x 900 N; radial-axis 500 N" in html
     assert "peak force" in html
     assert "m/s²" in html
+
+
+def test_a_limit_that_is_broken_is_told_with_its_joint(plan_of):
+    plan = plan_of(GANTRY)
+    task = replace(plan.task, torque_limit={"x": 1.0}, speed_limit=None)
+    broken = qa.evaluate_coefficients(task, [])
+    words = f"{plan.motion.peak_torque:.4g} N at x"
+    assert dict(plan_rows(broken))["limits"].endswith(f"(broken: {words})")
+    assert "beyond its limit of force at x" in " ".join(plan_answer(broken))
 
 
 def test_rows_of_a_mixed_robot_have_each_kind_of_joint(plan_of):

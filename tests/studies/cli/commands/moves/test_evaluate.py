@@ -228,7 +228,7 @@ def test_a_table_without_a_motion_that_keeps_the_limits(call):
     code, out, err = evaluate(call, "f.csv", "--torque-limit 0.001")
     assert (code, out) == (1, "")
     (least,) = re.findall(
-        r"keeps the limits best is (\S+) N m, above 0.001 N m; widen that limit", err
+        r"keeps the limits best is (\S+) N m, above its limit of 0.001 N m; widen that limit", err
     )
     peaks = [rollout(TASK, CycloidPolynomial(2), x).motion.peak_torque for x in X]
     assert float(least) == pytest.approx(min(peaks), rel=1e-2)
