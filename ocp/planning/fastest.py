@@ -189,7 +189,9 @@ def _why_too_short(task: PointToPoint, least: LeastTime) -> str:
 
 def _beyond(excess: float) -> str:
     """Say by how much every motion found exceeds a limit."""
-    return f"every motion found exceeds a limit by {100 * max(excess, 1e-6):.1g} % or more"
+    percent = 100 * max(excess, 1e-6)
+    share = f"{percent:.1g}" if percent < 1 else f"{percent:.0f}"
+    return f"every motion found exceeds a limit by {share} % or more"
 
 
 def _longest_first(failed: Mapping[float, str]) -> tuple[tuple[float, str], ...]:
