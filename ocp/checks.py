@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from dataclasses import is_dataclass
-from functools import wraps
+from functools import cache, wraps
 from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
 
@@ -158,8 +158,9 @@ def _construction(kind: type[Any]) -> str:
     return f"{kind.__name__}({', '.join(_needed(kind))})"
 
 
+@cache
 def object_of(kind: Any) -> Any:
-    """Make an object of a class without arguments; ValueError if it needs some."""
+    """Return the only object of a class, made without arguments; ValueError if it needs some."""
     if needed := _needed(kind):
         raise ValueError(f"{kind.__name__} needs {', '.join(needed)}; give each a default")
     return kind()
