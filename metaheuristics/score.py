@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from math import ceil, nan
 from typing import Any, ClassVar
@@ -222,7 +223,7 @@ class AdditiveEpsilon(Indicator):
 
 def known_indicators() -> Mapping[str, Indicator]:
     """Return all indicators by name: those of quietarm, then the user's own."""
-    return {name: object_of(kind) for name, kind in known(Indicator).items()}
+    return {name: _indicator_of(kind) for name, kind in known(Indicator).items()}
 
 
 def __getattr__(name: str) -> Any:
@@ -234,7 +235,13 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-HYPERVOLUME = object_of(Hypervolume)
+@cache
+def _indicator_of(kind: type[Indicator]) -> Indicator:
+    """Return the only object of a class."""
+    return object_of(kind)
+
+
+HYPERVOLUME = _indicator_of(Hypervolume)
 
 
 GAP = "hypervolume gap [%]"

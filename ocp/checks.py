@@ -158,12 +158,21 @@ def _construction(kind: type[Any]) -> str:
     return f"{kind.__name__}({', '.join(_needed(kind))})"
 
 
-@cache
 def object_of(kind: Any) -> Any:
-    """Return the only object of a class, made without arguments; ValueError if it needs some."""
+    """Make an object of a class without arguments; ValueError if it needs some.
+
+    Of a class that ships it is always the same. One of the user's may be defined again.
+    """
+    return _shipped_object(kind) if ships(kind) else _new_object(kind)
+
+
+def _new_object(kind: Any) -> Any:
     if needed := _needed(kind):
         raise ValueError(f"{kind.__name__} needs {', '.join(needed)}; give each a default")
     return kind()
+
+
+_shipped_object = cache(_new_object)
 
 
 def _needed(kind: type[Any]) -> list[str]:
