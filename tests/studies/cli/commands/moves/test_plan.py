@@ -16,7 +16,7 @@ def test_a_plan_says_what_it_found_and_what_it_wrote(folder, done):
     """With a start that looks like an option."""
     out = done(
         "plan arm-on-flexible-link --start -pi/2 --target 45deg --duration 1000ms "
-        "--torque-limit 0.4 --starts 2 --seed 3 --output plan.json --output move.csv "
+        "--torque-limit 0.4 --terms 6 --starts 2 --seed 3 --output plan.json --output move.csv "
         "--output move.pdf --quiet"
     )
     assert out.splitlines()[-3:] == ["wrote plan.json", "wrote move.csv", "wrote move.pdf"]
