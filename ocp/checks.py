@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from dataclasses import is_dataclass
-from functools import wraps
+from functools import cache, wraps
 from os import PathLike
 from typing import Annotated, Any, ParamSpec, TypeVar
 
@@ -159,10 +159,20 @@ def _construction(kind: type[Any]) -> str:
 
 
 def object_of(kind: Any) -> Any:
-    """Make an object of a class without arguments; ValueError if it needs some."""
+    """Make an object of a class without arguments; ValueError if it needs some.
+
+    Of a class that ships it is always the same. One of the user's may be defined again.
+    """
+    return _shipped_object(kind) if ships(kind) else _new_object(kind)
+
+
+def _new_object(kind: Any) -> Any:
     if needed := _needed(kind):
         raise ValueError(f"{kind.__name__} needs {', '.join(needed)}; give each a default")
     return kind()
+
+
+_shipped_object = cache(_new_object)
 
 
 def _needed(kind: type[Any]) -> list[str]:

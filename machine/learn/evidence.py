@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from math import tau
 
@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 from quietarm.machine.identify.identified import Estimate, Identified, Part, is_frequency
 from quietarm.machine.learn.arrival_map import ArrivalMap, faster_by, map_of
-from quietarm.machine.learn.find_start import tip_share
-from quietarm.machine.learn.read_force import swing_by_joint
-from quietarm.machine.learn.read_swing import AfterMove, modal_names
+from quietarm.machine.learn.reading.find_start import tip_share
+from quietarm.machine.learn.reading.read_move import ReadMove
+from quietarm.machine.learn.reading.read_swing import modal_names
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.learn.weigh_moves import weigh_moves
-from quietarm.machine.recordings.recording import Recording
 from quietarm.models import Plant
 from quietarm.ocp.judged_motion import JudgedMotion
 from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory, RecordedArrival
@@ -38,38 +37,6 @@ _OF_DAMPING = 0.3
 _OF_FEW = (4.0, 4.0, 4.0, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 """Deviations that hold 95 of 100, by how many frequencies they follow from: Student's, and 4 where
 that is more, as a machine hardly varies without bounds."""
-
-
-@dataclass(frozen=True)
-class ReadMove:
-    """A move in a recording: when it began [s], when it ended, and what swung after it.
-
-    Without a tip that follows from the joint's motion.
-    """
-
-    recording: Recording
-    start: float
-    arrival: float
-    after: AfterMove
-    doubt: str = ""
-
-    @property
-    def by_joint(self) -> bool:
-        """Return whether no tip was recorded."""
-        return is_by_joint(self.recording)
-
-    def on(self, plant: Plant, place: float) -> ReadMove:
-        """Return this move as read by another plant's frequencies."""
-        if not self.by_joint:
-            return self
-        part = self.after.part or Part(self.recording.name, self.start, self.arrival)
-        after = swing_by_joint(self.recording, part, self.arrival, plant, place)
-        return replace(self, after=replace(after, notes=self.after.notes))
-
-
-def is_by_joint(recording: Recording) -> bool:
-    """Return whether a recording has no tip, so that its swing follows from the joint."""
-    return recording.tip is None and recording.acceleration is None
 
 
 def motion_of(move: ExecutedMove, task: PointToPoint, plant: Plant) -> JudgedMotion:

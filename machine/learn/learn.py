@@ -12,23 +12,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from quietarm.machine.identify.identified import is_frequency
-from quietarm.machine.learn.check_clock import check_clock
-from quietarm.machine.learn.check_columns import check_columns, refuse_constant
-from quietarm.machine.learn.check_move import check_move
-from quietarm.machine.learn.check_size import check_size
-from quietarm.machine.learn.evidence import (
-    Evidence,
-    ReadMove,
-    evidence_of,
-    is_by_joint,
-    motion_of,
-)
-from quietarm.machine.learn.find_start import find_start, off_the_path, refuse_exchanged
+from quietarm.machine.learn.evidence import Evidence, evidence_of, motion_of
 from quietarm.machine.learn.learning import Learning
 from quietarm.machine.learn.next_plan import plan_again
-from quietarm.machine.learn.read_force import read_torque, swing_by_joint
-from quietarm.machine.learn.read_payload import read_payload
-from quietarm.machine.learn.read_swing import AfterMove, check_length, read_swing
+from quietarm.machine.learn.reading.find_start import find_start, off_the_path, refuse_exchanged
+from quietarm.machine.learn.reading.read_force import read_torque, swing_by_joint
+from quietarm.machine.learn.reading.read_move import ReadMove, is_by_joint
+from quietarm.machine.learn.reading.read_payload import read_payload
+from quietarm.machine.learn.reading.read_swing import AfterMove, check_length, read_swing
+from quietarm.machine.learn.refusals.check_clock import check_clock
+from quietarm.machine.learn.refusals.check_columns import check_columns, refuse_constant
+from quietarm.machine.learn.refusals.check_move import check_move
+from quietarm.machine.learn.refusals.check_size import check_size
 from quietarm.machine.learn.robots.robot_evidence import refuse_delay, robot_evidence
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.mending import without_glitches

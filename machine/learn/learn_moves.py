@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from quietarm.machine.identify.identified import Estimate, Part, is_frequency
 from quietarm.machine.learn.evidence import told_of
-from quietarm.machine.learn.read_swing import modal_names
+from quietarm.machine.learn.reading.read_swing import modal_names
 from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.models import Plant
 from quietarm.ocp.planning.executed import ExecutedMove

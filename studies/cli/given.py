@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection
+from functools import cached_property
 from typing import Any
 
 import click
@@ -59,7 +60,7 @@ class Given:
         """The whole line that was typed."""
         return shlex.join(["quietarm", *self._context.obj])
 
-    @property
+    @cached_property
     def _params(self) -> list[click.Parameter]:
         """The command's own arguments and options."""
         command: Any = self._context.command

@@ -13,7 +13,7 @@ from quietarm.interrupts import interruptible
 from quietarm.machine.identify.identified import Estimate
 from quietarm.machine.learn.learn import check_plan, read_move
 from quietarm.machine.learn.learn_moves import MovesOfMachine
-from quietarm.machine.learn.read_swing import modal_names
+from quietarm.machine.learn.reading.read_swing import modal_names
 from quietarm.machine.recordings.mending import without_glitches
 from quietarm.machine.recordings.recording import Recording, checked_recordings
 from quietarm.ocp.planning.executed import ExecutedMove, MoveHistory, RecordedArrival

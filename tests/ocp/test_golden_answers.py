@@ -16,7 +16,6 @@ QUICK = {
     "printed on uncertain link", "plan link pi/6 0.8 in its box", "plan arm pi/2 0.8",
     "plan dual link", "plan beam", "plan torque", "plan jerk", "plan 1 mm", "plan 12 terms",
     "plan spline", "plan mix", "plan final state", "plan ipopt link", "front link pi/6 0.8",
-    "weighted front", "many moves of the arm",
 }  # fmt: skip
 """One of a kind; the others are slow."""
 CASES = [

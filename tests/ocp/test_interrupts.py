@@ -84,6 +84,7 @@ def _pressed_after(seconds):
         thread.join()
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", WORK)
 def test_ctrl_c_ends_what_takes_long_without_an_answer(tasks, name):
     # of a thousand starts, and of as many points: they do not end before the signal

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from math import inf
 from pathlib import Path
@@ -285,8 +286,7 @@ def known_formats() -> Mapping[str, ExportFormat]:
 
     ValueError if a user's format has an ending of another one.
     """
-    for module in iter_modules([str(Path(__file__).parent)]):
-        import_module(f"{__package__}.{module.name}")
+    _load_shipped()
     formats: dict[str, ExportFormat] = {
         name: object_of(kind) for name, kind in known(ExportFormat).items()
     }
@@ -302,6 +302,13 @@ def known_formats() -> Mapping[str, ExportFormat]:
                     f"give {type(form).__name__} another"
                 )
     return formats
+
+
+@cache
+def _load_shipped() -> None:
+    """Import every file of this folder, once: its formats are then known."""
+    for module in iter_modules([str(Path(__file__).parent)]):
+        import_module(f"{__package__}.{module.name}")
 
 
 def formats_of(*taken: str) -> list[ExportFormat]:

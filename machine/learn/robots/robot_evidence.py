@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.machine.identify.identified import Estimate, Identified
-from quietarm.machine.learn.check_clock import check_clock
-from quietarm.machine.learn.check_columns import refuse_constant
 from quietarm.machine.learn.evidence import Evidence, history_with
-from quietarm.machine.learn.find_start import Start
+from quietarm.machine.learn.reading.find_start import Start
+from quietarm.machine.learn.refusals.check_clock import check_clock
+from quietarm.machine.learn.refusals.check_columns import refuse_constant
 from quietarm.machine.learn.robots.check_signals import check_signals
 from quietarm.machine.learn.robots.joint_torques import SeenModes
 from quietarm.machine.learn.robots.robot_start import find_robot_start

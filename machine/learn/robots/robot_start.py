@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.learn.find_start import Start, compared_at, refuse_unexplained
+from quietarm.machine.learn.reading.find_start import Start, compared_at, refuse_unexplained
 from quietarm.machine.recordings.robot_recording import RobotRecording
 from quietarm.models import JointMotion, Plant
 from quietarm.models.robot import RobotOnPath

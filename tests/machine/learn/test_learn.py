@@ -11,8 +11,8 @@ from scipy.signal import cont2discrete, lfilter
 import quietarm as qa
 from quietarm.machine.identify.identified import Part
 from quietarm.machine.learn.arrival_map import map_of
-from quietarm.machine.learn.find_start import find_start
-from quietarm.machine.learn.read_swing import read_swing
+from quietarm.machine.learn.reading.find_start import find_start
+from quietarm.machine.learn.reading.read_swing import read_swing
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.learn.weigh_moves import weigh_moves
 from quietarm.models import LinearAxis

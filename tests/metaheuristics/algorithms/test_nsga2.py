@@ -1,5 +1,6 @@
 """NSGA-II as the paper sets it."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -32,6 +33,7 @@ def test_duplicates_are_those_with_equal_coefficients(X, others):
     assert list(kept) == expected
 
 
+@pytest.mark.slow
 def test_it_finds_the_front_of_zdt1():
     problem = get_problem("zdt1", n_var=6)
     algorithm = PaperNSGA2(100)

@@ -42,6 +42,7 @@ def test_the_other_solver_finds_no_other_energy(front):
         assert abs(end.difference) < 1e-6
 
 
+@pytest.mark.slow_after(1)
 def test_a_point_that_is_too_dear_is_seen(front):
     point = front.points[1]
     moved = replace(point, coefficients=tuple(0.9 * np.array(point.coefficients)))
@@ -51,6 +52,7 @@ def test_a_point_that_is_too_dear_is_seen(front):
     assert both.largest == -both.points[0].difference
 
 
+@pytest.mark.slow_after(1)
 def test_a_front_of_a_search_is_checked_by_ipopt(front):
     searched = replace(front, points=front.points[-1:]).restated(settings={})
     assert cross_check(searched).solver == Ipopt()

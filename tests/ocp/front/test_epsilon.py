@@ -18,6 +18,7 @@ def case(request):
     return task, bound, qa.epsilon_front(task, bound=bound, points=POINTS)
 
 
+@pytest.mark.slow_after(1)
 def test_the_ends_are_the_plans_of_least_energy(case):
     # plan_move starts on its own, four times at either end
     task, bound, front = case
@@ -29,6 +30,7 @@ def test_the_ends_are_the_plans_of_least_energy(case):
     assert front.cheapest().residual == pytest.approx(free.residual, rel=1e-3)
 
 
+@pytest.mark.slow_after(1)
 def test_no_point_is_dearer_than_a_plan_at_its_residual(case):
     task, bound, front = case
     for point in front.points[2:-1:2]:
@@ -37,6 +39,7 @@ def test_no_point_is_dearer_than_a_plan_at_its_residual(case):
         assert point.energy == pytest.approx(plan.energy, rel=2e-3)
 
 
+@pytest.mark.slow_after(1)
 def test_points_are_even_in_both_objectives(case):
     _, _, front = case
     assert len(front.points) == POINTS
@@ -48,6 +51,7 @@ def test_points_are_even_in_both_objectives(case):
     assert steps.min() > 0.5 * steps.mean()
 
 
+@pytest.mark.slow_after(1)
 def test_every_point_has_the_figures_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:

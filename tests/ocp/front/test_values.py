@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from moves import ARM
 
@@ -98,6 +98,7 @@ figures = st.floats(min_value=-0.0, allow_infinity=False)  # residuals and energ
 
 
 @given(st.lists(st.tuples(figures, figures), max_size=6), st.integers(0, 2**63), st.floats(0, 1))
+@settings(max_examples=20)  # each writes and reads a file
 def test_a_front_comes_back_as_it_was(tmp_path_factory, figures, seed, share):
     path = tmp_path_factory.mktemp("front") / "front.json"
     history = (Mark(20, share),)

@@ -76,6 +76,7 @@ def test_what_is_not_certified_has_the_place_of_its_minimum(monkeypatch):
     assert failure.asked == {"residual_limit": pytest.approx(within.residual, rel=1e-3)}
 
 
+@pytest.mark.slow_after(1)
 def test_the_figures_are_those_of_the_independent_integrator(case):
     task, bound, front = case
     for point in front.points:

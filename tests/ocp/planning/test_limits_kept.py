@@ -87,6 +87,7 @@ def test_a_limit_is_kept_and_its_peak_told(plants, solved, move, quantity):
         assert plan.motion.peak(name) == pytest.approx(peak, rel=1e-8)
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(("start", "target"), [(-pi / 2, pi / 4), (pi / 4, -pi / 2)])
 def test_bounds_of_one_direction_and_of_the_speed_hold(plants, start, target):
     forward = np.sign(target - start)

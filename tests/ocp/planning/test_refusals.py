@@ -92,7 +92,7 @@ def test_what_is_planned_takes_no_less(limit):
         {"acceleration_limit": 1e-30},
         {"jerk_limit": 1e-30},
         {"deflection_limit": 1e-30},
-        {"torque_speed": ((1e-3, 0.0), (5e-4, 3.0))},
+        pytest.param({"torque_speed": ((1e-3, 0.0), (5e-4, 3.0))}, marks=pytest.mark.slow),
         {"torque_limit": {"joint": 1e-9}},
     ],
 )

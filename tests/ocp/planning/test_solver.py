@@ -71,6 +71,7 @@ def test_too_few_steps_are_doubled_until_the_integrators_agree(tasks, solved):
     assert plan.energy == pytest.approx(usual.energy, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_verification_takes_more_steps_before_it_says_that_two_integrators_differ():
     # A crane of two modes, 24 terms: coefficients of thousands, whose powers of T cancel.
     plant = qa.LinearAxis(omega1=2.68, omega2=6.47, share1=0.3, share2=0.7, mode_count=2)

@@ -62,6 +62,7 @@ def test_a_bound_is_for_the_weights_of_units(of_units):
     assert np.array_equal(np.array(default)[:, 4:], np.array(given)[:, 4:])
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize(
     ("name", "profile"),
     [

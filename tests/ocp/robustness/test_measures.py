@@ -55,6 +55,7 @@ def test_samples_are_what_cvodes_finds_one_by_one(evaluated):
         assert found.samples.peak_torque[i] == pytest.approx(single.peak_torque, rel=1e-3)
 
 
+@pytest.mark.slow_after(1)
 def test_sweeps_change_one_thing_alone(evaluated):
     plan, ranges, found = evaluated
     assert [sweep.name for sweep in found.sweeps] == list(ranges)

@@ -146,6 +146,7 @@ def _corrupt_derivatives(function):
     return corrupted
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_a_wrong_derivative_of_the_sqp_does_not_reach_ipopt(link_and_arm, name, monkeypatch):
     steps, _, box = link_and_arm[name]
@@ -173,6 +174,7 @@ def _halved(peaks):
     return {name: peak / 2 for name, peak in peaks.items()}
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("name", ["single link", "arm"])
 def test_a_wrong_derivative_of_ipopt_does_not_reach_the_sqp(link_and_arm, name, monkeypatch):
     steps, _, box = link_and_arm[name]

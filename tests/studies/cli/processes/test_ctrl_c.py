@@ -28,11 +28,12 @@ def begin(process, words):
         assert process.poll() is None
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize(
     ("line", "words", "number"),
     [
         # the ends of the front are found
-        (f"{FRONT} --output f.json --output f.png", r"([2-9]|\d\d+) of ", signal.SIGINT),
+        (f"{FRONT} --output f.json --output f.png", r"([2-9]|\d\d+) of ", signal.SIGTERM),
         (FILM, r"\d+ of 501 frames", signal.SIGINT),
     ],
 )
@@ -47,6 +48,7 @@ def test_what_is_stopped_writes_nothing(at_a_terminal, stop, folder, plan, line,
     assert [path.name for path in folder.iterdir()] == ["plan.json"]
 
 
+@pytest.mark.slow_after(1)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_search_that_is_stopped_writes_the_front_until_then(at_a_terminal, stop, folder, number):
     skip_where_ignored(number)
@@ -78,6 +80,7 @@ main()
 """
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize(
     ("line", "module", "number"),
     [

@@ -108,6 +108,7 @@ TEXTS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow_after(4)
 @pytest.mark.parametrize("name", TEXTS)
 def test_texts_of_other_programs_tell_the_same(push, done, name):
     header, form, size, options = TEXTS[name]
@@ -397,6 +398,7 @@ def test_an_unknown_unit_and_columns_of_no_use_are_named(push, done):
     assert "'cs' in column time_cs is not a known unit, so its values are read in s" in out
 
 
+@pytest.mark.slow_after(2)
 @pytest.mark.parametrize("heading", ["micros", "time_us", "micros()", "Time (us)"])
 def test_a_counter_of_a_small_board_that_wraps_is_unwrapped(push, done, heading):
     ticks = (np.round(1e6 * TIME) + 2**32 - 3_000_000) % 2**32

@@ -7,27 +7,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lines import MOVE, run
+from lines import MOVE
 
 from quietarm.ocp import CopperLoss, Floor, Plan, PositivePower, plan_move
 
 
-def test_a_plan_says_what_it_found_and_what_it_wrote(folder):
-    """One process, with a start that looks like an option."""
-    ran = run(
+def test_a_plan_says_what_it_found_and_what_it_wrote(folder, done):
+    """With a start that looks like an option."""
+    out = done(
         "plan arm-on-flexible-link --start -pi/2 --target 45deg --duration 1000ms "
-        "--torque-limit 0.4 --starts 2 --seed 3 --output plan.json --output move.csv "
+        "--torque-limit 0.4 --terms 6 --starts 2 --seed 3 --output plan.json --output move.csv "
         "--output move.pdf --quiet"
     )
-    assert (ran.returncode, ran.stderr) == (0, "")
-    assert ran.stdout.splitlines()[-3:] == ["wrote plan.json", "wrote move.csv", "wrote move.pdf"]
+    assert out.splitlines()[-3:] == ["wrote plan.json", "wrote move.csv", "wrote move.pdf"]
     assert sorted(path.name for path in folder.iterdir()) == ["move.csv", "move.pdf", "plan.json"]
     found = Plan.load("plan.json")
     record = found.record
     assert (record.settings["starts"], record.seed, found.task.torque_limit) == (2, 3, 0.4)
-    assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in ran.stdout
-    assert f"{found.energy:.4g} J" in ran.stdout
-    assert f"{found.motion.peak_torque:.4g} N m" in ran.stdout
+    assert "arm-on-flexible-link, -90 to 45 deg in 1 s" in out
+    assert f"{found.energy:.4g} J" in out
+    assert f"{found.motion.peak_torque:.4g} N m" in out
 
 
 def test_json_goes_to_standard_output_and_words_to_standard_error(call, plan):

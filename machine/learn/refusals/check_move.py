@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.machine.identify.fits.diagnosis import saturated
 from quietarm.machine.identify.identified import is_frequency
-from quietarm.machine.learn.find_start import Start, StartSearch, best_search, courses_of
+from quietarm.machine.learn.reading.find_start import Start, StartSearch, best_search, courses_of
 from quietarm.machine.recordings.recording import Recording, noise_of
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp.judged_motion import JudgedMotion

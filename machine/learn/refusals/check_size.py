@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.learn.check_move import is_cut
-from quietarm.machine.learn.find_start import Start, StartSearch, courses_of
+from quietarm.machine.learn.reading.find_start import Start, StartSearch, courses_of
+from quietarm.machine.learn.refusals.check_move import is_cut
 from quietarm.machine.recordings.recording import Recording
 from quietarm.models.joint_motion import LINEAR
 from quietarm.ocp.planning.plan import Plan

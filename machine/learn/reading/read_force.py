@@ -18,7 +18,12 @@ from quietarm.machine.identify.fits.columns import BasisColumns, Driven, Forced
 from quietarm.machine.identify.fits.part_fitter import PartFitter
 from quietarm.machine.identify.fits.swing_model import SwingModel
 from quietarm.machine.identify.identified import Part
-from quietarm.machine.learn.read_swing import AfterMove, modal_names, read_swing, starts_near
+from quietarm.machine.learn.reading.read_swing import (
+    AfterMove,
+    modal_names,
+    read_swing,
+    starts_near,
+)
 from quietarm.machine.recordings.fitted_spline import fit_spline
 from quietarm.machine.recordings.recording import Recording, noise_of
 from quietarm.models import Plant

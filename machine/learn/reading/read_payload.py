@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from quietarm.machine.identify.fits.fitting import power_near
 from quietarm.machine.identify.fits.part_fitter import PartFitter
 from quietarm.machine.identify.identified import Estimate
-from quietarm.machine.learn.evidence import ReadMove
-from quietarm.machine.learn.read_force import torque_model
-from quietarm.machine.learn.read_swing import modal_names
+from quietarm.machine.learn.reading.read_force import torque_model
+from quietarm.machine.learn.reading.read_move import ReadMove
+from quietarm.machine.learn.reading.read_swing import modal_names
 from quietarm.machine.recordings.recording import Recording
 from quietarm.models import Plant
 from quietarm.ocp.judged_motion import JudgedMotion

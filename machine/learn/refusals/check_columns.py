@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from quietarm.machine.learn.read_swing import FAR, SETTLES
+from quietarm.machine.learn.reading.read_swing import FAR, SETTLES
 from quietarm.machine.learn.tip_modes import TipModes
 from quietarm.machine.recordings.recording import Recording
 from quietarm.models.joint_motion import LINEAR
