@@ -581,7 +581,8 @@ def further_figures(results: Results) -> dict[str, list[dict[str, Any]]]:
             problems = [name for name in problems if Problem(name).move in moves]
         figures[axis] = []
         for budget in (1_000, 10_000):
-            methods = searches_in(results, OF_FURTHER, budget, problems, max(len(problems), 5))
+            run_there = [name for name in problems if results.of(DIFFERENCES, budget, name)]
+            methods = searches_in(results, OF_FURTHER, budget, run_there, max(len(run_there), 5))
             methods = [pair for pair in methods if pair[0].split()[0] in (*FURTHER_METHODS, "es")]
             if not methods:
                 continue
@@ -606,14 +607,18 @@ def energy_of_families(results: Results) -> list[dict[str, Any]]:
     Medians over the moves of all families, with as many coefficients; a front without such a
     motion counts as infinite.
     """
-    families = ("polynomial", "spline", "gaussians")
     names = {
-        family: {Problem(name).move: name for name in results.problems(*FURTHER[family])}
-        for family in families
+        family: {
+            Problem(name).move: name
+            for name in results.problems(*FURTHER[family])
+            if results.control(name) and results.of("moead-de", 10_000, name)
+        }
+        for family in ("polynomial", "spline", "gaussians")
     }
+    names = {family: by_move for family, by_move in names.items() if by_move}
     moves = sorted(set.intersection(*(set(by_move) for by_move in names.values())))
     figures = list[dict[str, Any]]()
-    for family in families:
+    for family in names:
         for label, budget in ((f"{CONTROL} {CONTROL_SETTINGS}", 0), ("moead-de", 10_000)):
             ratios = [
                 np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
