@@ -16,6 +16,7 @@ from quietarm.metaheuristics import PRESETS, Job
 from .limits import LIMITS
 from .moves import Move
 from .problems import CENTRE_TERMS, Case
+from .tuned_cells import TUNED_CELLS
 
 AXES = (
     "centre", "crossing", "limits", "few", "energy", "paper", "noise", "objectives", "large",
@@ -138,7 +139,8 @@ def first_of_plants(moves: Sequence[Move], count: int) -> list[Move]:
     return chosen
 
 
-Settings = Mapping[str, tuple[tuple[str, Any], ...]]
+Settings = Mapping[tuple[str, str], tuple[tuple[str, Any], ...]]
+"""Tuned settings by cell and method."""
 
 
 def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]:
@@ -155,7 +157,7 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         yield from papers(balanced, seed)
         yield from noise(balanced, seed)
         yield from objectives(balanced, seed)
-        yield from tuned(tested, tuned_settings, seed)
+        yield from tuned(tested, balanced, tuned_settings, seed)
         yield from large(tested, seed)
         yield from papers(remaining, seed)
         yield from crossing(remaining, seed)
@@ -305,11 +307,14 @@ def objectives(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                 yield Planned("objectives", 0, case, "epsilon", None, (("points", points),))
 
 
-def tuned(tested: Sequence[Move], settings: Settings, seed: int) -> Iterator[Planned]:
-    """Tuned settings at the centre."""
-    for method, values in settings.items():
-        for move in tested:
-            yield Planned("tuned", seed, Case(move), method, 10_000, values)
+def tuned(
+    tested: Sequence[Move], balanced: Sequence[Move], settings: Settings, seed: int
+) -> Iterator[Planned]:
+    """Tuned settings in the cells where they were tuned, at the centre on all moves."""
+    for (name, method), values in settings.items():
+        cell = TUNED_CELLS[name]
+        for case in cell.to_test(tested if name == "centre" else balanced):
+            yield Planned("tuned", seed, case, method, cell.budget, values, cell.noise)
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
