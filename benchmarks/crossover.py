@@ -65,8 +65,8 @@ def main(typed: list[str] | None = None) -> int:
 
     from parts.crossover.deciding import refuse_rows
     from parts.crossover.problems import read_moves
-    from parts.crossover.tuned_cells import refuse_cell
     from parts.crossover.run import describe, merge, part_of, print_plan, refuse_axes
+    from parts.crossover.tuned_cells import refuse_cell
 
     try:
         part = part_of(options.part)

@@ -183,6 +183,10 @@ class Results:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.runs = read_runs(folder)
+        self.gather()
+
+    def gather(self) -> None:
+        """Bring the points of all runs of a problem together: what the gaps are measured by."""
         points_of = defaultdict[str, list[Array]](list)
         energies = defaultdict[str, list[float]](list)
         for run in self.runs:
@@ -643,16 +647,20 @@ def chosen_on_first(
 ) -> str:
     """The method of the least median gap on the first seeds, on problems that all have.
 
-    Of those alone that were run on most problems of every kind.
+    Of those alone that were run on most problems of every kind that any was run on.
     """
 
     def known(label: str, problems: Sequence[str]) -> set[str]:
         return {name for name in problems if seeds_of(results, row, label, name, False)}
 
+    def is_on_most(label: str, problems: Sequence[str]) -> bool:
+        most = max(len(known(other, problems)) for other in labels)
+        return 2 * len(known(label, problems)) > max(most, 1)
+
     of_all = [
         label
         for label in labels
-        if all(len(known(label, problems)) >= 5 for problems in problems_of.values())
+        if all(is_on_most(label, problems) for problems in problems_of.values())
     ]
     worst = dict[str, float]()
     for label in of_all:

@@ -20,6 +20,7 @@ from .first_table import (
     by_indicators,
     first_table,
     indicator_words,
+    kind_of,
     seeds_of,
 )
 from .pictures import WAYS, write_pictures
@@ -107,6 +108,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         indicator_names=INDICATORS,
         row_titles=TITLES,
         fresh_seeds=seeds_of,
+        kind_of=kind_of,
         deciding=list(DECIDING),
         ladder=LADDER,
         ways=WAYS,

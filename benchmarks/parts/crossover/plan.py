@@ -159,6 +159,7 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         yield from objectives(balanced, seed)
         yield from tuned(tested, balanced, tuned_settings, seed)
         yield from large(tested, seed)
+        yield from alone(remaining, seed)
         yield from papers(remaining, seed)
         yield from crossing(remaining, seed)
         yield from limited(remaining, seed)
@@ -243,9 +244,7 @@ def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
     Without noise only the methods for few candidates are run with 1,000 here: the others are in
     the map.
     """
-    for move in moves:
-        for method in FOR_FEW:
-            yield Planned("few", seed, Case(move), method, BUDGETS[0])
+    yield from alone(moves, seed)
     for share in (0.0, NOISES[0]):
         for budget in (FEW, *BUDGETS[:1]) if share else (FEW,):
             for move in moves:
@@ -257,6 +256,13 @@ def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                 yield Planned("few", seed, case, "random", budget, noise=share)
                 settings = (("step", WIDE_STEPS[0]),) if share else ()
                 yield Planned("few", seed, case, "slsqp", budget, settings, share)
+
+
+def alone(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Searches without a population, with 1,000 candidates: the map has the others."""
+    for move in moves:
+        for method in FOR_FEW:
+            yield Planned("few", seed, Case(move), method, BUDGETS[0])
 
 
 def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:

@@ -20,7 +20,7 @@ from .problems import CENTRE_TERMS, read_moves
 from .shared_terms import front_of_every_number
 from .tables import best_settings, write_table
 
-BATCH = 60
+BATCH = 20
 """Jobs between two writings of the tables, and fronts in memory at once."""
 
 
