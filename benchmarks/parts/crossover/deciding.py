@@ -19,7 +19,7 @@ class Deciding:
 
     Attributes
     ----------
-    axis : str
+    axes : tuple of str
         As of `Planned`.
     budget : int
         Candidates.
@@ -29,7 +29,7 @@ class Deciding:
         Part of the name of the energy's kind; every kind where empty.
     """
 
-    axis: str
+    axes: tuple[str, ...]
     budget: int
     labels: tuple[str, ...]
     kind: str = ""
@@ -37,7 +37,8 @@ class Deciding:
     def has(self, planned: Planned) -> bool:
         """Return whether a job of the plan is one of these."""
         return (
-            (planned.axis, planned.budget) == (self.axis, self.budget)
+            planned.axis in self.axes
+            and planned.budget == self.budget
             and planned.case.terms == CENTRE_TERMS
             and self.kind in planned.case.kind
             and f"{planned.method} {planned.words}".strip() in self.labels
@@ -45,28 +46,25 @@ class Deciding:
 
 
 DECIDING = {
-    "centre": Deciding("centre", 10_000, ("moead-de", "slsqp")),
-    "limits": Deciding("limits", 10_000, ("moead-de", "slsqp")),
-    "limits-1000": Deciding("limits", 1_000, ("es", "slsqp")),
-    "limits-200": Deciding("limits", 200, ("gp", "slsqp")),
-    "jumps": Deciding("energy", 10_000, ("moead-de", "slsqp"), "motor-map"),
-    "noise": Deciding(
-        "noise",
+    "centre": Deciding(("centre",), 10_000, ("moead-de", "slsqp")),
+    "limits": Deciding(("limits",), 10_000, ("moead-de", "slsqp")),
+    "limits-1000": Deciding(("limits",), 1_000, ("es", "slsqp")),
+    "limits-200": Deciding(("limits",), 200, ("gp", "slsqp")),
+    "jumps": Deciding(("energy",), 10_000, ("moead-de", "slsqp"), "motor-map"),
+    "noise": Deciding(("noise",),
         10_000,
         ("moead-de reevaluate=5 noise=0.01", "slsqp step=0.01 noise=0.01"),
     ),
-    "few-200": Deciding("few", 200, ("gp", "slsqp")),
-    "few-200-noise": Deciding("few", 200, ("gp noise=0.01", "slsqp step=0.01 noise=0.01")),
-    "few-1000": Deciding(
-        "crossing", 1_000, ("gde3 population=20", "moead-de population=20", "slsqp")
+    "few-200": Deciding(("few",), 200, ("gp", "slsqp")),
+    "few-200-noise": Deciding(("few",), 200, ("gp noise=0.01", "slsqp step=0.01 noise=0.01")),
+    "few-1000": Deciding(("crossing", "few"), 1_000, ("es", "gde3 population=20", "moead-de population=20", "slsqp")
     ),
-    "few-1000-noise": Deciding(
-        "few",
+    "few-1000-noise": Deciding(("few",),
         1_000,
         ("gde3 population=20 noise=0.01", "moead-de population=20 noise=0.01",
          "slsqp step=0.01 noise=0.01"),
     ),
-    "objectives": Deciding("objectives", 10_000, ("moead-de",)),
+    "objectives": Deciding(("objectives",), 10_000, ("moead-de",)),
 }  # fmt: skip
 """By row; `python benchmarks/crossover.py FOLDER --deciding NAME ...` runs those that are named."""
 
