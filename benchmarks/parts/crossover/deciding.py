@@ -51,15 +51,20 @@ DECIDING = {
     "limits-1000": Deciding(("limits",), 1_000, ("es", "slsqp")),
     "limits-200": Deciding(("limits",), 200, ("gp", "slsqp")),
     "jumps": Deciding(("energy",), 10_000, ("moead-de", "slsqp"), "motor-map"),
-    "noise": Deciding(("noise",),
+    "noise": Deciding(
+        ("noise",),
         10_000,
         ("moead-de reevaluate=5 noise=0.01", "slsqp step=0.01 noise=0.01"),
     ),
     "few-200": Deciding(("few",), 200, ("gp", "slsqp")),
     "few-200-noise": Deciding(("few",), 200, ("gp noise=0.01", "slsqp step=0.01 noise=0.01")),
-    "few-1000": Deciding(("crossing", "few"), 1_000, ("es", "gde3 population=20", "moead-de population=20", "slsqp")
+    "few-1000": Deciding(
+        ("crossing", "few"),
+        1_000,
+        ("es", "gde3 population=20", "moead-de population=20", "slsqp"),
     ),
-    "few-1000-noise": Deciding(("few",),
+    "few-1000-noise": Deciding(
+        ("few",),
         1_000,
         ("gde3 population=20 noise=0.01", "moead-de population=20 noise=0.01",
          "slsqp step=0.01 noise=0.01"),
