@@ -307,7 +307,7 @@ def test_pictures_say_what_is_seen_in_colours_of_the_grammar():
         of_axes = {"#000000", "#B0B0B0"}
         assert lines - of_axes <= grammar.INKS
     # as the tables of the page say
-    assert "21 and 2" in drawn[0].get_suptitle()
+    assert "21 and 1" in drawn[0].get_suptitle()
     assert "MOEA/D-DE has a gap of 0.66 and 26 %" in drawn[1].get_suptitle()
 
 
