@@ -1,8 +1,9 @@
 """When does a metaheuristic win? The runs behind docs/results, and its page.
 
     python benchmarks/crossover.py FOLDER [--workers N] [--part 1/4] [--axis centre]
+    python benchmarks/crossover.py FOLDER --deciding centre limits --of-plant 2
     python benchmarks/crossover.py FOLDER --plan
-    python benchmarks/crossover.py FOLDER --tune gde3 [--trials 100] [--budget 5000]
+    python benchmarks/crossover.py FOLDER --tune slsqp [--cell jumps] [--trials 100]
     python benchmarks/crossover.py FOLDER --landscapes
     python benchmarks/crossover.py FOLDER --batches
     python benchmarks/crossover.py FOLDER --page
@@ -40,15 +41,19 @@ def parser() -> argparse.ArgumentParser:
     arguments.add_argument(
         "--candidates", nargs="*", type=int, default=[], help="only runs of so many"
     )
+    arguments.add_argument(
+        "--deciding", nargs="*", help="only runs on which a row of the report rests, by its name"
+    )
     arguments.add_argument("--of-plant", type=int, help="only so many moves of each plant")
     arguments.add_argument("--rounds", type=int, default=15, help="only so many seeds")
+    arguments.add_argument("--from-round", type=int, default=0, help="only seeds from this one on")
     arguments.add_argument("--results", type=Path, default=RESULTS, help="where rows are kept")
     arguments.add_argument("--plan", action="store_true", help="count jobs and hours, run nothing")
     arguments.add_argument(
         "--tune", nargs="*", default=[], help="methods whose settings are sought"
     )
     arguments.add_argument("--trials", type=int, default=100)
-    arguments.add_argument("--budget", type=int, default=5_000, help="candidates of a trial")
+    arguments.add_argument("--cell", default="centre", help="where settings are tuned")
     arguments.add_argument("--landscapes", action="store_true", help="features of the problems")
     arguments.add_argument("--batches", action="store_true", help="candidates asked for at once")
     arguments.add_argument("--page", action="store_true", help="write the page of what is there")
@@ -60,12 +65,16 @@ def main(typed: list[str] | None = None) -> int:
     """Run what is missing, or what else is asked for."""
     options = parser().parse_args(typed)
 
+    from parts.crossover.deciding import refuse_rows
     from parts.crossover.problems import read_moves
     from parts.crossover.run import describe, merge, part_of, print_plan, refuse_axes
+    from parts.crossover.tuned_cells import refuse_cell
 
     try:
         part = part_of(options.part)
         refuse_axes(options.axis)
+        refuse_rows(options.deciding or ())
+        refuse_cell(options.cell)
     except ValueError as error:
         parser().error(str(error))
     if options.plan:
@@ -88,7 +97,7 @@ def main(typed: list[str] | None = None) -> int:
         moves = read_moves(options.results / "moves.csv")
         table = options.results / "tuning.csv"
         for method in options.tune:
-            tune(method, moves, options.budget, options.trials, options.folder, table)
+            tune(method, options.cell, moves, options.trials, options.folder, table)
     else:
         return run_missing(options, part)
     return 0
@@ -96,16 +105,18 @@ def main(typed: list[str] | None = None) -> int:
 
 def run_missing(options: argparse.Namespace, part: tuple[int, int]) -> int:
     """Run what is missing of the plan; 1 where some jobs failed."""
+    from parts.crossover.deciding import rows_of
     from parts.crossover.run import missing_of, run_jobs_of
 
     missing = missing_of(
         options.results,
         part,
         options.axis,
-        options.rounds,
+        range(options.from_round, options.rounds),
         options.methods,
         options.candidates,
         options.of_plant,
+        rows_of(options.deciding),
     )
     workers = options.scheduler or options.workers
     return int(run_jobs_of(missing, options.folder, options.results, workers) > 0)

@@ -203,6 +203,10 @@ class Results:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.runs = read_runs(folder)
+        self.gather()
+
+    def gather(self) -> None:
+        """Bring the points of all runs of a problem together: what the gaps are measured by."""
         points_of = defaultdict[str, list[Array]](list)
         energies = defaultdict[str, list[float]](list)
         for run in self.runs:
@@ -714,6 +718,177 @@ def gap_after(results: Results, problem: str, label: str, candidates: float) -> 
     return float("nan")
 
 
+@dataclass(frozen=True)
+class Row:
+    """A row of the report's first table: a search against one rival, on one or more kinds.
+
+    The search, and the settings of SLSQP, are those of the least median gap on the first seeds; of
+    several kinds of problem, those whose largest median is least. Fresh seeds judge them.
+    """
+
+    name: str
+    axes: tuple[str, ...]
+    budget: int
+    kinds: tuple[str, ...] = ("absolute",)
+    noise: str = ""
+    rival: str = DIFFERENCES
+    measure: str = "between"
+
+
+FIRST_SEEDS = 3
+EQUAL = 0.5
+"""Two gaps that differ by less [percentage points] are equal for practice; set beforehand."""
+OF_LIMITS = tuple(f"absolute-{limits}" for limits in LIMITS)
+ROWS = (
+    Row("model", ("centre",), 10_000, rival=CONTROL),
+    Row("smooth", ("centre",), 10_000),
+    Row("limits", ("limits",), 10_000, OF_LIMITS),
+    Row("limits-1000", ("limits",), 1_000, OF_LIMITS),
+    Row("limits-200", ("limits",), 200, OF_LIMITS),
+    Row("jumps", ("energy",), 10_000, ("motor-map",)),
+    Row("noise", ("noise",), 10_000, noise="noise=0.01"),
+    Row("few-200", ("few",), 200),
+    Row("few-200-noise", ("few",), 200, noise="noise=0.01"),
+    Row("few-1000", ("few", "crossing"), 1_000),
+    Row("few-1000-noise", ("few",), 1_000, noise="noise=0.01"),
+    Row("three", ("objectives",), 10_000, ("absolute-3-objectives",), "", CONTROL, "points"),
+    Row("four", ("objectives",), 10_000, ("absolute-4-objectives",), "", CONTROL, "points"),
+)
+
+
+def judged_rows(results: Results) -> list[dict[str, Any]]:
+    """The first table: every row's search, chosen on the first seeds and judged on fresh ones.
+
+    Holm's p is over all comparisons of the table, by each indicator apart.
+    """
+    rows = [judged(results, row) for row in ROWS]
+    comparisons = [comparison for row in rows for comparison in row["comparisons"]]
+    for indicator in INDICATORS:
+        tests = [c["by"][indicator] for c in comparisons if indicator in c["by"]]
+        for test, p in zip(tests, holm([test["p"] for test in tests]), strict=True):
+            test["holm"] = p
+    return rows
+
+
+def judged(results: Results, row: Row) -> dict[str, Any]:
+    """A row with its search, the rival's settings and a comparison for each kind of problem."""
+    problems_of = {kind: results.problems(kind=kind) for kind in row.kinds}
+    every = [name for problems in problems_of.values() for name in problems]
+    labels = [
+        label
+        for label, _ in searches_in(results, row.axes, row.budget, every, 5)
+        if (f" {label}".partition(" noise=")[1] != "") == bool(row.noise)
+        and "continuation" not in label
+        and (not row.noise or label.endswith(row.noise))
+    ]
+    searches = [label for label in labels if not takes_slopes(label)]
+    steps = [label for label in labels if label.partition(" ")[0] == DIFFERENCES]
+    search = chosen_on_first(results, row, searches, problems_of)
+    rival = CONTROL if row.rival == CONTROL else chosen_on_first(results, row, steps, problems_of)
+    return {
+        "row": row.name,
+        "budget": row.budget,
+        "measure": row.measure,
+        "search": search,
+        "rival": rival,
+        "comparisons": [
+            comparison
+            for kind, problems in problems_of.items()
+            if (comparison := judged_on(results, row, (search, rival), kind, problems))
+        ],
+    }
+
+
+def seeds_of(results: Results, row: Row, label: str, name: str, fresh: bool) -> list[Run]:
+    """The runs of a method on a problem, of the first seeds or of fresh ones."""
+    runs = results.of(label, row.budget, name)
+    return [run for run in runs if (run.seed >= FIRST_SEEDS) == fresh]
+
+
+def chosen_on_first(
+    results: Results, row: Row, labels: Sequence[str], problems_of: Mapping[str, Sequence[str]]
+) -> str:
+    """The method of the least median gap on the first seeds, on problems that all have.
+
+    Of those alone that were run on most problems of every kind that any was run on.
+    """
+
+    def known(label: str, problems: Sequence[str]) -> set[str]:
+        return {name for name in problems if seeds_of(results, row, label, name, False)}
+
+    def is_on_most(label: str, problems: Sequence[str]) -> bool:
+        most = max(len(known(other, problems)) for other in labels)
+        return 2 * len(known(label, problems)) > max(most, 1)
+
+    of_all = [
+        label
+        for label in labels
+        if all(is_on_most(label, problems) for problems in problems_of.values())
+    ]
+    worst = dict[str, float]()
+    for label in of_all:
+        medians = list[float]()
+        for problems in problems_of.values():
+            shared = set.intersection(*(known(other, problems) for other in of_all))
+            runs = [seeds_of(results, row, label, name, False) for name in sorted(shared)]
+            gaps = [results.median(of_name, results.gap, row.measure) for of_name in runs]
+            medians.append(float(np.median(gaps)))
+        worst[label] = max(medians)
+    return min(worst, key=lambda label: worst[label], default="")
+
+
+def judged_on(
+    results: Results, row: Row, pair: tuple[str, str], kind: str, problems: Sequence[str]
+) -> dict[str, Any]:
+    """A search and its rival on fresh seeds, by every indicator; nothing where there are none."""
+    search, rival = pair
+    ours = dict[str, list[Run]]()
+    theirs = dict[str, list[Run]]()
+    for name in problems:
+        of_search = seeds_of(results, row, search, name, True)
+        of_rival = seeds_of(results, row, rival, name, True)
+        of_rival = results.control(name) if rival == CONTROL else of_rival
+        if of_search and of_rival and results.control(name):
+            ours[name], theirs[name] = of_search, of_rival
+    if len(ours) < 5:
+        return {}
+    seeds = [len(runs) for runs in ours.values()]
+    if rival != CONTROL:
+        seeds = [min(pair) for pair in zip(seeds, map(len, theirs.values()), strict=True)]
+    controls = {name: results.control(name) for name in ours}
+    plants = [Problem(name).plant for name in ours]
+
+    def gaps(runs_of: Mapping[str, list[Run]], indicator: str) -> Array:
+        runs = runs_of.values()
+        return np.array([results.median(of_name, results.gap, indicator) for of_name in runs])
+
+    by = dict[str, dict[str, Any]]()
+    for indicator in INDICATORS:
+        if indicator == "between" and row.measure == "points":
+            continue  # of three and four objectives there are no motions between
+        difference = gaps(ours, indicator) - gaps(theirs, indicator)
+        by[indicator] = {
+            "better": int((difference < 0).sum()),
+            "difference": float(np.median(difference)),
+            "p": signed_ranks(difference),
+        }
+    difference = gaps(ours, row.measure) - gaps(theirs, row.measure)
+    by_plant = [np.median(difference[np.array(plants) == plant]) for plant in sorted(set(plants))]
+    return {
+        "kind": kind.removeprefix("absolute").removeprefix("-"),
+        "moves": len(ours),
+        "seeds": min(seeds),
+        "missing": float(np.median(gaps(ours, row.measure))),
+        "control": float(np.median(gaps(theirs, row.measure))),
+        "gradient": float(np.median(gaps(controls, row.measure))),
+        "equal": int((np.abs(difference) < EQUAL).sum()),
+        "interval": interval(difference, plants),
+        "plants": len(by_plant),
+        "plants_better": int(sum(value < 0 for value in by_plant)),
+        "by": by,
+    }
+
+
 def by_label(results: Results, label: str, budget: int) -> Rival:
     """A method with a budget as the rival of searches."""
     return lambda name, spent: results.of(label, budget, name)
@@ -770,50 +945,80 @@ def lines_over(
     return lines
 
 
-def tuned(results: Results) -> dict[str, Any]:
-    """Default and tuned settings on the moves of testing, and what was tried."""
+def tuned(results: Results) -> list[dict[str, Any]]:
+    """Default and tuned settings by cell and method on the moves of testing, and what was tried."""
     path = results.folder / "tuning.csv"
     if not path.exists():
-        return {}
+        return []
     with path.open(newline="") as file:
         trials = list(csv.DictReader(file))
-    figures: dict[str, Any] = {}
-    for method in sorted({trial["method"] for trial in trials}):
-        of_method = [trial for trial in trials if trial["method"] == method]
-        best = min(of_method, key=lambda trial: float(trial["score"]))
-        figures[method] = {
-            "trials": len(of_method),
-            "budget": int(best["budget"]),
-            "default_score": 10 ** float(of_method[0]["score"]),
-            "best_score": 10 ** float(best["score"]),
-            "settings": json.loads(best["settings"]),
-            **on_testing(results, method),
-        }
+    figures = list[dict[str, Any]]()
+    for cell, method in dict.fromkeys((trial["cell"], trial["method"]) for trial in trials):
+        tried = [trial for trial in trials if (trial["cell"], trial["method"]) == (cell, method)]
+        best = min(tried, key=lambda trial: float(trial["score"]))
+        row = next(row for row in ROWS if row.name == ("smooth" if cell == "centre" else cell))
+        figures.append(
+            {
+                "cell": cell,
+                "method": method,
+                "trials": len(tried),
+                "budget": int(best["budget"]),
+                "default_score": 10 ** float(tried[0]["score"]),
+                "best_score": 10 ** float(best["score"]),
+                "settings": json.loads(best["settings"]),
+                **on_testing(results, row, method),
+            }
+        )
     for measure in MEASURES:
-        rows = [row[measure] for row in figures.values() if measure in row]
+        rows = [row[measure] for row in figures if measure in row]
         for row, p in zip(rows, holm([row["p"] for row in rows]), strict=True):
             row["holm"] = p
     return figures
 
 
-def on_testing(results: Results, method: str) -> dict[str, Any]:
-    """Default and tuned settings on the moves of testing, by measure; nothing where not run."""
-    runs = [run for run in results.runs if run.axis == "tuned" and run.method == method]
-    problems = sorted({run.problem for run in runs})
-    problems = [name for name in problems if results.of(method, 10_000, name)]
-    if not problems:
+def on_testing(results: Results, row: Row, method: str) -> dict[str, Any]:
+    """Default and tuned settings on the moves of testing, by measure; nothing where not run.
+
+    Beside them the method that the row holds against this one, with the settings of the row.
+    """
+    runs = [
+        run
+        for run in results.runs
+        if (run.axis, run.method, run.budget) == ("tuned", method, row.budget)
+        and ("noise=" in run.settings) == bool(row.noise)
+        and Problem(run.problem).kind in row.kinds
+    ]
+    if not runs:
         return {}
     label = runs[-1].label
-    figures = {}
+    problems_of = {kind: results.problems(kind=kind) for kind in row.kinds}
+    problems = sorted({run.problem for run in runs if run.label == label})
+    labels = [
+        other
+        for other, _ in searches_in(results, row.axes, row.budget, problems, 5)
+        if other.partition(" ")[0] == method
+        and "continuation" not in other
+        and ("noise=" in other) == bool(row.noise)
+        and other.endswith(row.noise)
+    ]
+    usual = chosen_on_first(results, row, labels, problems_of)
+    of_row = judged(results, row)
+    other = of_row["search"] if method == DIFFERENCES else of_row["rival"]
+    problems = [
+        name
+        for name in problems
+        if results.of(usual, row.budget, name) and results.of(other, row.budget, name)
+    ]
+    figures: dict[str, Any] = {"usual": usual, "other": other}
     for measure in MEASURES:
-        default, better = (
+        default, better, against = (
             np.array(
                 [
-                    results.median(results.of(name, 10_000, problem), results.gap, measure)
+                    results.median(results.of(name, row.budget, problem), results.gap, measure)
                     for problem in problems
                 ]
             )
-            for name in (method, label)
+            for name in (usual, label, other)
         )
         figures[measure] = {
             "moves": len(problems),
@@ -821,6 +1026,9 @@ def on_testing(results: Results, method: str) -> dict[str, Any]:
             "tuned": float(np.median(better)),
             "nearer": int((better < default).sum()),
             "p": signed_ranks(better - default),
+            "other": float(np.median(against)),
+            "nearer_than_other": int((better < against).sum()),
+            "p_other": signed_ranks(better - against),
         }
     return figures
 
@@ -1354,6 +1562,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "further": further_figures(results),
         "families": energy_of_families(results),
         "parallel": parallel_figures(results),
+        "judged": judged_rows(results),
         "indicators": by_indicator(results, crossed),
         "differences": against_differences(results, crossed),
         "gain": gain_of_coefficients(results, crossed),

@@ -6,19 +6,37 @@ import importlib.util
 import json
 import platform
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
 import pandas as pd
 
+from .deciding import DECIDING
+from .first_table import (
+    INDICATORS,
+    TITLES,
+    by_indicators,
+    first_table,
+    indicator_words,
+    kind_of,
+    seeds_of,
+)
 from .pictures import WAYS, write_pictures
 from .plan import LADDER
 from .run import plan_table
 from .tables import write_table
 from .verdicts import verdicts
-from .words import short_label, signed, spelled_budget, two_digits, without_noise
+from .words import (
+    capitalised,
+    p_value,
+    short_label,
+    signed,
+    spelled_budget,
+    two_digits,
+    without_noise,
+)
 
 BEGIN = "<!-- what to take: benchmarks/crossover.py writes these lines -->"
 END = "<!-- end of what to take -->"
@@ -81,6 +99,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         times=times_of,
         signed=signed,
         without_noise=without_noise,
+        capitalised=capitalised,
     )
     moves = pd.read_csv(results / "moves.csv")
     return environment.get_template(template).render(
@@ -92,9 +111,14 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         verdicts=verdicts,
         cell_of=cell_of,
         best_of=best_of,
-        limits_over=limits_over,
-        gaussian_words=gaussian_words,
-        seed_words=seed_words,
+        first_table=first_table,
+        judged_indicators=by_indicators,
+        indicator_words=indicator_words,
+        indicator_names=INDICATORS,
+        row_titles=TITLES,
+        fresh_seeds=seeds_of,
+        kind_of=kind_of,
+        deciding=list(DECIDING),
         ladder=LADDER,
         ways=WAYS,
         row_of=row_of,
@@ -133,90 +157,9 @@ def cell_of(cells: Sequence[Mapping[str, Any]], terms: int, budget: int) -> Mapp
     )
 
 
-def limits_over(limits: Mapping[str, Any], budget: int) -> dict[str, Any] | None:
-    """Return what the row with limits says: ranges over the kinds of limit; None before any run.
-
-    The search is the one whose largest gap over the kinds is least.
-    """
-    kinds = [kind for kind in limits.values() if kind["budget"] == budget]
-    if not kinds:
-        return None
-    labels = [row["method"] for row in kinds[0]["differences"]]
-    rows = {
-        label: [row for kind in kinds for row in kind["differences"] if row["method"] == label]
-        for label in labels
-    }
-    label = min(
-        (label for label in labels if len(rows[label]) == len(kinds)),
-        key=lambda label: max(row["missing"] for row in rows[label]),
-    )
-    chosen = rows[label]
-    gradient = [row_of(kind["methods"], label) or {} for kind in kinds]
-    clear = [
-        kind["limits"].replace("-", ", ")
-        for kind, row in zip(kinds, chosen, strict=True)
-        if row["holm"] <= 0.05 and row["log_ratio"] < 0
-    ]
-    better = sum(row["moves_nearer"] for row in chosen)
-    compared = sum(row["moves"] - row["no_control"] for row in chosen)
-    return {
-        "kinds": len(kinds),
-        "name": label.partition(" ")[0],
-        "label": short_label(label),
-        "search": range_of(row["missing"] for row in chosen),
-        "differences": range_of(row["control"] for row in chosen),
-        "gradient": range_of(row["control"] for row in gradient),
-        "clear": len(clear),
-        "is_sure": 2 * len(clear) >= len(kinds),
-        "sure": (
-            f"better than SLSQP on {better} of {compared} problems; "
-            f"significant for {' and for '.join(clear) if clear else 'no kind of limit'}"
-        ),
-    }
-
-
-def gaussian_words(figures: Mapping[str, Any]) -> str:
-    """Say with what Gaussian processes were not run."""
-    kinds = {kind["limits"] for kind in figures["limits"].values()}
-    lacking = list[str]()
-    for budget in (200, 1_000):
-        run = [
-            kind["limits"]
-            for kind in figures["limits"].values()
-            if kind["budget"] == budget and row_of(kind["methods"], "gp")
-        ]
-        only = f" (but for {' and '.join(run)})".replace("-", ", ") if run else ""
-        if len(run) < len(kinds):
-            lacking.append(f"with limits and {spelled_budget(budget)} candidates{only}")
-    alone = {cell["budget"] for cell in figures["few"] if row_of(cell["methods"], "gp")}
-    if 1_000 not in alone:
-        lacking.append("with 1,000 candidates without limits")
-    if not lacking:
-        return "Gaussian processes were not run with more than 1,000 candidates."
-    return f"Gaussian processes were not run {', nor '.join(lacking)}."
-
-
-def seed_words(count: int) -> str:
-    """Say how many seeds rows have, of which some have one."""
-    return "1" if count <= 1 else f"1 to {count}"
-
-
-def range_of(values: Iterable[float]) -> str:
-    """The least and the largest value, with two digits."""
-    known = sorted(values)
-    return f"{two_digits(known[0])} to {two_digits(known[-1])}"
-
-
 def row_of(rows: Sequence[Mapping[str, Any]], method: str) -> Mapping[str, Any] | None:
     """A method's row."""
     return next((row for row in rows if row["method"] == method), None)
-
-
-def p_value(value: float | None) -> str:
-    """A p value as it is printed."""
-    if value is None or value != value:
-        return "-"
-    return f"{value:.2g}" if value >= 1e-4 else "< 0.0001"
 
 
 def times_of(log_ratio: float) -> str:

@@ -16,6 +16,7 @@ from quietarm.metaheuristics import PRESETS, Job
 from .limits import LIMITS
 from .moves import Move
 from .problems import CENTRE_FAMILY, CENTRE_TERMS, FAMILIES, INTEGERS, Case
+from .tuned_cells import TUNED_CELLS
 
 AXES = (
     "centre", "crossing", "limits", "few", "energy", "paper", "noise", "objectives", "large",
@@ -154,7 +155,8 @@ def first_of_plants(moves: Sequence[Move], count: int) -> list[Move]:
     return chosen
 
 
-Settings = Mapping[str, tuple[tuple[str, Any], ...]]
+Settings = Mapping[tuple[str, str], tuple[tuple[str, Any], ...]]
+"""Tuned settings by cell and method."""
 
 
 def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]:
@@ -172,8 +174,9 @@ def rounds(moves: Sequence[Move], tuned_settings: Settings) -> Iterator[Planned]
         yield from noise(balanced, seed)
         yield from objectives(balanced, seed)
         yield from further(balanced, seed)
-        yield from tuned(tested, tuned_settings, seed)
+        yield from tuned(tested, balanced, tuned_settings, seed)
         yield from large(tested, seed)
+        yield from alone(remaining, seed)
         yield from papers(remaining, seed)
         yield from crossing(remaining, seed)
         yield from limited(remaining, seed)
@@ -258,9 +261,7 @@ def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
     Without noise only the methods for few candidates are run with 1,000 here: the others are in
     the map.
     """
-    for move in moves:
-        for method in FOR_FEW:
-            yield Planned("few", seed, Case(move), method, BUDGETS[0])
+    yield from alone(moves, seed)
     for share in (0.0, NOISES[0]):
         for budget in (FEW, *BUDGETS[:1]) if share else (FEW,):
             for move in moves:
@@ -272,6 +273,13 @@ def few(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
                 yield Planned("few", seed, case, "random", budget, noise=share)
                 settings = (("step", WIDE_STEPS[0]),) if share else ()
                 yield Planned("few", seed, case, "slsqp", budget, settings, share)
+
+
+def alone(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
+    """Searches without a population, with 1,000 candidates: the map has the others."""
+    for move in moves:
+        for method in FOR_FEW:
+            yield Planned("few", seed, Case(move), method, BUDGETS[0])
 
 
 def kinds(moves: Sequence[Move], seed: int) -> Iterator[Planned]:
@@ -352,11 +360,14 @@ def further_of(axis: str, case: Case, seed: int) -> Iterator[Planned]:
     yield Planned(axis, seed, case, "es", BUDGETS[0])
 
 
-def tuned(tested: Sequence[Move], settings: Settings, seed: int) -> Iterator[Planned]:
-    """Tuned settings at the centre."""
-    for method, values in settings.items():
-        for move in tested:
-            yield Planned("tuned", seed, Case(move), method, 10_000, values)
+def tuned(
+    tested: Sequence[Move], balanced: Sequence[Move], settings: Settings, seed: int
+) -> Iterator[Planned]:
+    """Tuned settings in the cells where they were tuned, at the centre on all moves."""
+    for (name, method), values in settings.items():
+        cell = TUNED_CELLS[name]
+        for case in cell.to_test(tested if name == "centre" else balanced):
+            yield Planned("tuned", seed, case, method, cell.budget, values, cell.noise)
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:

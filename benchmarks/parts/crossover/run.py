@@ -12,6 +12,7 @@ import pandas as pd
 import quietarm as qa
 from quietarm.metaheuristics import Job, LostJobsError, run_jobs
 
+from .deciding import Deciding
 from .integers import front_of_every_number, search_of_every_number
 from .landscape import add_features
 from .packed import Row, key_of, read_rows, row_of, write_rows
@@ -19,9 +20,7 @@ from .plan import AXES, Planned, first_of_plants, rounds
 from .problems import CENTRE_TERMS, read_moves
 from .tables import best_settings, write_table
 
-TUNED_WITH = 5_000
-"""Candidates of the trials whose best settings are tested."""
-BATCH = 60
+BATCH = 20
 """Jobs between two writings of the tables, and fronts in memory at once."""
 
 
@@ -32,7 +31,7 @@ def runs_path(results: Path, axis: str) -> Path:
 
 def plan_of(results: Path) -> list[Planned]:
     """Every job of the plan, in order."""
-    settings = best_settings(results / "tuning.csv", TUNED_WITH)
+    settings = best_settings(results / "tuning.csv")
     return list(rounds(read_moves(results / "moves.csv"), settings))
 
 
@@ -71,14 +70,15 @@ def missing_of(
     results: Path,
     part: tuple[int, int] = (1, 1),
     axes: Sequence[str] = (),
-    most_rounds: int | None = None,
+    seeds: range | None = None,
     methods: Sequence[str] = (),
     candidates: Sequence[int] = (),
     of_plant: int | None = None,
+    deciding: Sequence[Deciding] | None = None,
 ) -> list[Planned]:
-    """Return what is to be run still, of the axes, methods and budgets that are given.
+    """Return what is to be run still, of the axes, seeds, methods and budgets that are given.
 
-    And on so many moves of each plant.
+    And on so many moves of each plant, and of the report's rows that are given.
     """
     plan = plan_of(results)
     tested = [move for move in read_moves(results / "moves.csv") if not move.tuning]
@@ -90,10 +90,11 @@ def missing_of(
         for planned in of_part
         if planned.key not in done
         and (not axes or planned.axis in axes)
-        and (most_rounds is None or planned.round < most_rounds)
+        and (seeds is None or planned.round in seeds)
         and (not methods or planned.method in methods)
         and (not candidates or planned.budget in candidates)
         and planned.case.move.name in moves
+        and (deciding is None or any(row.has(planned) for row in deciding))
     ]
 
 

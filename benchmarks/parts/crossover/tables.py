@@ -22,20 +22,20 @@ def read_trials(path: Path) -> pd.DataFrame:
     """The table of trials."""
     if path.exists():
         return pd.read_csv(path)
-    return pd.DataFrame({"method": [], "budget": [], "trial": [], "score": [], "settings": []})
+    names = ("cell", "method", "budget", "trial", "score", "settings")
+    return pd.DataFrame({name: [] for name in names})
 
 
-def best_settings(path: Path, budget: int) -> dict[str, tuple[tuple[str, Any], ...]]:
-    """The best trial's settings by method, as a plan takes them.
+def best_settings(path: Path) -> dict[tuple[str, str], tuple[tuple[str, Any], ...]]:
+    """The best trial's settings by cell and method, as a plan takes them.
 
     A method with fewer trials is being tuned still, and left out.
     """
-    fewest = 20
+    fewest = 8
     table = read_trials(path)
-    table = table[table["budget"] == budget]
-    table = table[table.groupby("method")["trial"].transform("size") >= fewest]
+    table = table[table.groupby(["cell", "method"])["trial"].transform("size") >= fewest]
     best = {
-        method: json.loads(rows.loc[rows["score"].idxmin(), "settings"])
-        for method, rows in table.groupby("method")
+        (str(cell), str(method)): json.loads(rows.loc[rows["score"].idxmin(), "settings"])
+        for (cell, method), rows in table.groupby(["cell", "method"])
     }
-    return {method: tuple(sorted(settings.items())) for method, settings in best.items()}
+    return {place: tuple(sorted(settings.items())) for place, settings in best.items()}

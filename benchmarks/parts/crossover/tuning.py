@@ -1,4 +1,4 @@
-"""Settings tuned on the twelve moves of tuning, by Optuna; every trial is a row of a table.
+"""Settings tuned on the twelve moves of tuning, by Optuna and cell; each trial is a table's row.
 
 A trial runs a search once on every move, each with another seed, and its score is the mean over
 moves of the decimal logarithm of the missing hypervolume [%], against the quick front that fixes a
@@ -23,8 +23,10 @@ from quietarm.metaheuristics.score import objectives
 
 from .moves import Move
 from .packed import area
+from .plan import BUDGETS, SMALL_POPULATION
 from .problems import Case
 from .tables import read_trials, write_table
+from .tuned_cells import TUNED_CELLS, TunedCell
 
 FLOOR = 1e-2
 """A missing hypervolume [%] that counts as least: a trial may come nearer than the quick front."""
@@ -51,15 +53,23 @@ def space_of(method: str) -> Space:
         "velocity_limit": optuna.distributions.FloatDistribution(0.02, 1.0, log=True),
         "elites": optuna.distributions.IntDistribution(2, 12),
         "neighbour_mating": share,
+        "step": optuna.distributions.FloatDistribution(1e-7, 0.3, log=True),
+        "first": optuna.distributions.IntDistribution(2, 60, log=True),
+        "differences": share,
     }
-    return {"population": population, **{name: known[name] for name in known if name in names}}
+    tuned = {name: known[name] for name in known if name in names}
+    return tuned if PRESETS[method].population == 1 else {"population": population, **tuned}
 
 
-def defaults_of(method: str) -> dict[str, Any]:
-    """The library's settings of what is tuned; what has no value is in the middle of its range."""
+def defaults_of(method: str, budget: int) -> dict[str, Any]:
+    """The library's settings of what is tuned; what has no value is in the middle of its range.
+
+    Of few candidates the population is the small one of the map.
+    """
     preset = PRESETS[method]
     values = {setting.name: setting.default for setting in preset.settings}
-    stated = {"population": preset.population}
+    small = dict(SMALL_POPULATION) if budget <= BUDGETS[0] else {}
+    stated = {"population": preset.population, **small} if preset.population > 1 else {}
     for name in space_of(method):
         value = values.get(name)
         if value is not None:
@@ -70,7 +80,7 @@ def defaults_of(method: str) -> dict[str, Any]:
 
 
 def score(
-    method: str, settings: dict[str, Any], cases: Sequence[Case], budget: int, folder: Path
+    method: str, settings: dict[str, Any], cases: Sequence[Case], cell: TunedCell, folder: Path
 ) -> float:
     """Mean over moves of the logarithm of the missing hypervolume [%]."""
     lacks = list[float]()
@@ -82,10 +92,11 @@ def score(
             problem.profile,
             algorithm=method,
             bound=problem.bound,
-            population=settings["population"],
+            population=settings.get("population"),
             settings={name: value for name, value in settings.items() if name != "population"},
-            evaluations=budget,
+            evaluations=cell.trials,
             seed=1000 + seed,
+            noise=cell.noise,
         )
         whole = area(scale.stations)
         lacks.append(100 * (1 - area(scale.scaled(objectives(front))) / whole))
@@ -93,12 +104,13 @@ def score(
 
 
 def tune(
-    method: str, moves: Sequence[Move], budget: int, trials: int, folder: Path, path: Path
+    method: str, name: str, moves: Sequence[Move], trials: int, folder: Path, path: Path
 ) -> None:
-    """Go on until so many trials of a method with a budget are in the table."""
-    cases = [Case(move) for move in moves if move.tuning]
+    """Go on until so many trials of a method in a cell are in the table."""
+    cell = TUNED_CELLS[name]
+    cases = cell.to_tune(moves)
     table = read_trials(path)
-    rows = table[(table["method"] == method) & (table["budget"] == budget)]
+    rows = table[(table["method"] == method) & (table["cell"] == name)]
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     sampler = optuna.samplers.TPESampler(seed=52 + len(rows))
     study = optuna.create_study(sampler=sampler)
@@ -110,22 +122,23 @@ def tune(
             )
         )
     if not len(rows):
-        study.enqueue_trial(defaults_of(method))
+        study.enqueue_trial(defaults_of(method, cell.budget))
     for number in range(len(rows), trials):
         trial = study.ask(space)
         settings = dict(trial.params)
-        value = score(method, settings, cases, budget, folder)
+        value = score(method, settings, cases, cell, folder)
         study.tell(trial, value)
         row = {
+            "cell": name,
             "method": method,
-            "budget": budget,
+            "budget": cell.trials,
             "trial": number,
             "score": value,
             "settings": json.dumps({name: _short(value) for name, value in settings.items()}),
         }
         table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
         write_table(table, path, 6)
-        print(f"{method} {budget} trial {number}: {value:.4f}", flush=True)
+        print(f"{method} {name} trial {number}: {value:.4f}", flush=True)
 
 
 def _short(value: Any) -> Any:

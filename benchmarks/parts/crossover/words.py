@@ -68,3 +68,15 @@ def signed(value: float) -> str:
 def without_noise(method: str) -> str:
     """A method with its settings but the noise that it saw."""
     return " ".join(word for word in method.split() if not word.startswith("noise="))
+
+
+def p_value(value: float | None) -> str:
+    """A p value as it is printed."""
+    if value is None or value != value:
+        return "-"
+    return f"{value:.2g}" if value >= 1e-4 else "< 0.0001"
+
+
+def capitalised(words: str) -> str:
+    """Return words with a capital letter first; all others stay as they are."""
+    return words[:1].upper() + words[1:]
