@@ -51,20 +51,17 @@ def twenty_lines(function: Any, seed: int, budget: int) -> None:
     """A (1+1)-ES with an archive, written anew: success rule, random parent, feasibility first."""
     random = np.random.default_rng(seed)
     of = OneByOne(function)
-    archive = list[tuple[float, Array, Array]]()  # violation, objectives, candidate
+    X, F, V = np.empty((0, of.count)), np.empty((0, 2)), np.empty(0)
     x, step = random.random(of.count), 0.3
     while True:
-        objectives, violations = of(x)
-        broken = float(np.maximum(violations, 0).sum())
-        beaten = any(v < broken or (v == broken and (f <= objectives).all()) for v, f, _ in archive)
-        if not beaten:
-            archive = [
-                (v, f, a) for v, f, a in archive
-                if v < broken or (v == broken and not (objectives <= f).all())
-            ]  # fmt: skip
-            archive.append((broken, objectives, x))
-        step = float(np.clip(step * (0.95 if beaten else 1.22), 2e-3, 0.5))
-        parent = archive[random.integers(len(archive))][2]
+        f, violations = of(x)
+        v = np.maximum(violations, 0).sum()
+        is_beaten = ((v > V) | ((v == V) & (f >= F).all(axis=1))).any()
+        if not is_beaten:
+            stays = (v > V) | ((v == V) & ~(f <= F).all(axis=1))
+            X, F, V = np.vstack([X[stays], x]), np.vstack([F[stays], f]), np.append(V[stays], v)
+        step = np.clip(step * (0.95 if is_beaten else 1.22), 2e-3, 0.5)
+        parent = X[random.integers(len(X))]
         x = np.clip(parent + step * random.standard_normal(of.count), 0, 1)
 
 
