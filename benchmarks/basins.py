@@ -335,9 +335,14 @@ def read(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+def keys_of(path: Path) -> set[tuple[str, ...]]:
+    """Return what tells the runs of a table from others."""
+    return {tuple(row[column] for column in COLUMNS[:4]) for row in read(path)}
+
+
 def run_plan(name: str, path: Path, first_seed: int) -> None:
     """Run what is missing of a plan from a seed on; rows are kept after a minute or twenty runs."""
-    done = {tuple(row[column] for column in COLUMNS[:4]) for row in read(path)}
+    done = keys_of(path)
     rows = list[list[str]]()
     began = time.monotonic()
     rehearsed = set[str]()
@@ -353,6 +358,7 @@ def run_plan(name: str, path: Path, first_seed: int) -> None:
         rows.append(row_of(run))
         if len(rows) >= 20 or time.monotonic() - began > 60:
             add(rows, path)
+            done = keys_of(path)  # another process may have added some
             rows = []
             began = time.monotonic()
     if rows:
