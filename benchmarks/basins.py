@@ -54,7 +54,7 @@ METHODS = {
 """Methods by candidates; `es` sorts its whole archive, which takes long with many."""
 NEEDS = {
     "(1+1)-ES of twenty lines": "numpy", "COBYQA": "cobyqa", "Py-BOBYQA": "pybobyqa",
-    "DMulti-MADS": "PyNomad", "COMO-CMA-ES": "comocma", "qLogNEHVI": "botorch",
+    "DMulti-MADS": "PyNomad", "COMO-CMA-ES": "comocma",
 }  # fmt: skip
 TWENTY = "(1+1)-ES of twenty lines"
 OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES")
@@ -208,12 +208,11 @@ def simulator_plan() -> Iterator[Run]:
     """
     for subject in of_simulator():
         yield Run(subject, "moead-de", LONG, 100)
-    for seed in range(SEEDS):
-        yield from of_seed(of_simulator(), FEW, seed, OUTSIDE)
-        if seed < 3:
-            yield from of_seed(of_simulator(), SOME, seed, OUTSIDE)
-            for subject in of_simulator():
-                yield Run(subject, "gp", FEW, seed)
+        for seed in range(SEEDS):
+            yield from of_seed([subject], FEW, seed, OUTSIDE)
+            yield Run(subject, "gp", FEW, seed)
+    for seed in range(3):
+        yield from of_seed(of_simulator(), SOME, seed, OUTSIDE)
 
 
 def limits_plan() -> Iterator[Run]:
@@ -243,17 +242,10 @@ def named_plan() -> Iterator[Run]:
     for seed in range(5):
         for budget in (FEW, SOME):
             yield from of_seed(of_names(), budget, seed)
+    for seed in range(3):
         for subject in of_names():
             yield Run(subject, "gp", FEW, seed)
-        if seed < 3:
-            yield from of_seed(of_names(), MANY, seed)
-
-
-def bayes_plan() -> Iterator[Run]:
-    """BoTorch on four of the problems, with 200 candidates."""
-    for seed in range(3):
-        for subject in (*of_posts()[1:6:4], *of_limits()[:2]):
-            yield Run(subject, "qLogNEHVI", FEW, seed)
+        yield from of_seed(of_names(), MANY, seed)
 
 
 def gradient_plan() -> Iterator[Run]:
@@ -273,7 +265,6 @@ PLANS = {
     "simulator": simulator_plan,
     "limits": limits_plan,
     "limits-10000": limits_many_plan,
-    "bayes": bayes_plan,
     "named": named_plan,
     "gradient": gradient_plan,
 }

@@ -22,13 +22,13 @@ from scipy.stats import wilcoxon
 
 Array = NDArray[np.float64]
 CORNER = 1.1
-LEAST_SEEDS = 3
+LEAST_SEEDS = 2
 """Runs of every problem without which a method is in no table."""
 GRADIENT, DIFFERENCES = "gradient", ("slsqp", "slsqp random starts")
 CLEARLY = 0.1
 """Per cent by which a median has to be smaller to count."""
 TWENTY = "(1+1)-ES of twenty lines"
-OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES", "qLogNEHVI")
+OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES")
 FAMILIES = {"posts": "posts-", "simulated": "simulated-", "named": "named ", "limits": ""}
 """What the names of their problems begin with."""
 Gaps = dict[tuple[str, int], dict[str, list[float]]]
