@@ -29,8 +29,14 @@ CLEARLY = 0.1
 """Per cent by which a median has to be smaller to count."""
 TWENTY = "(1+1)-ES of twenty lines"
 OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES")
-FAMILIES = {"posts": "posts-", "simulated": "simulated-", "named": "named ", "limits": ""}
-"""What the names of their problems begin with."""
+FAMILIES = {
+    "posts": "posts-",
+    "simulated": "simulated-post-4",
+    "anecdotes": "simulated-",
+    "named": "named ",
+    "limits": "",
+}
+"""What the names of their problems begin with; anecdotes have one seed and are left out."""
 Gaps = dict[tuple[str, int], dict[str, list[float]]]
 """By method and candidates, then by problem: a gap for each seed."""
 
@@ -277,7 +283,7 @@ def basins_figures(folder: Path) -> dict[str, Any]:
     figures: dict[str, Any] = {"runs": len(runs), "hours": sum(run.seconds for run in runs) / 3600}
     for family in FAMILIES:
         of_family = [run for run in runs if family_of(run.problem) == family]
-        if not of_family:
+        if not of_family or family == "anecdotes":
             continue
         gaps, seconds = gaps_of(of_family)
         budgets = sorted({run.candidates for run in of_family} - {0})
