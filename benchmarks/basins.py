@@ -1,11 +1,11 @@
 """Searches, SLSQP and the gradient where a problem has several basins, and rivals from outside.
 
-    python benchmarks/basins.py [posts] [rivals] [simulator] [limits] [bayes] [gradient] [basins]
+    python benchmarks/basins.py [PLAN ...]
 
 Ten drawn moves between posts (`parts/posts.py`), two black boxes in MuJoCo with a post that crosses
-(`parts/simulated_arm.py`), and three moves of the map with limits. Runs are packed in basins.csv.xz
-as they finish, and the same line goes on after a stop. Rivals need their libraries
-(`parts/outside_rivals.py`), and are left out where these are missing.
+(`parts/simulated_arm.py`), three moves of the map with limits, and five named problems. Runs are
+packed in basins.csv.xz as they finish, and the same line goes on after a stop. Rivals need their
+libraries (`parts/outside_rivals.py`), and are left out where these are missing.
 """
 
 from __future__ import annotations
@@ -26,8 +26,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from parts.outside_rivals import RIVALS
+from rivals import PROBLEMS as NAMED
 
 import quietarm as qa
+from quietarm.metaheuristics import problem_of
 from quietarm.metaheuristics.problems.given_function import GivenFunction
 from quietarm.metaheuristics.problems.recorded import BudgetSpentError, RecordedFunction
 from quietarm.metaheuristics.thinning import thinned
@@ -47,15 +49,16 @@ WITH_POPULATION = ("moead-de", "gde3", "nsga2")
 METHODS = {
     FEW: ("slsqp", RANDOM_STARTS, "es", "moead-de", "gde3", "nsga2", "random"),
     SOME: ("slsqp", RANDOM_STARTS, "es", "moead-de", "gde3", "nsga2", "mo-cma-es", "random"),
-    MANY: ("slsqp", RANDOM_STARTS, "es", "moead-de", "gde3", "mo-cma-es"),
+    MANY: ("slsqp", RANDOM_STARTS, "moead-de", "gde3", "nsga2", "mo-cma-es"),
 }
+"""Methods by candidates; `es` sorts its whole archive, which takes long with many."""
 NEEDS = {
     "(1+1)-ES of twenty lines": "numpy", "COBYQA": "cobyqa", "Py-BOBYQA": "pybobyqa",
-    "DMulti-MADS": "PyNomad", "COMO-CMA-ES": "comocma", "qLogNEHVI": "botorch",
+    "DMulti-MADS": "PyNomad", "COMO-CMA-ES": "comocma",
 }  # fmt: skip
 TWENTY = "(1+1)-ES of twenty lines"
 OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES")
-AT_MANY = ("COBYQA", "DMulti-MADS", "COMO-CMA-ES")
+AT_MANY = ("COMO-CMA-ES", "DMulti-MADS", "COBYQA")
 MOVES = ("single-link-m4", "arm-on-flexible-link-m3", "dual-link-m3")
 """Of the map: the first tested move of three plants, with tight limits on torque."""
 
@@ -138,6 +141,24 @@ def of_limits() -> tuple[Subject, ...]:
     return tuple(subjects)
 
 
+@cache
+def of_names() -> tuple[Subject, ...]:
+    """The problems of `rivals.py`, known to quietarm by name."""
+    return tuple(
+        Subject(
+            f"named {name}",
+            problem_of(name).recorded,
+            partial(
+                qa.search,
+                problem_of(name).task,
+                problem_of(name).profile,
+                bound=problem_of(name).bound,
+            ),
+        )
+        for name in NAMED
+    )
+
+
 def rivals(names: Iterable[str]) -> list[str]:
     """Those whose library can be imported."""
     return [name for name in names if find_spec(NEEDS[name])]
@@ -153,28 +174,31 @@ def of_seed(
 
 
 def posts_plan() -> Iterator[Run]:
-    """The family: few candidates first; after every third seed one of many, and of processes."""
+    """The family with few candidates, from ten seeds."""
     for seed in range(SEEDS):
         for budget in (FEW, SOME):
             yield from of_seed(of_posts(), budget, seed)
-        if seed % 3 == 0:
-            for subject in of_posts():
-                yield Run(subject, "gp", FEW, seed // 3)
-            yield from of_seed(of_posts(), MANY, seed // 3)
-    for seed in range(SEEDS // 3, SEEDS):
+
+
+def many_plan() -> Iterator[Run]:
+    """The family with many candidates."""
+    for seed in range(SEEDS):
         yield from of_seed(of_posts(), MANY, seed)
 
 
-def rivals_plan() -> Iterator[Run]:
-    """Other libraries' solvers on the family: 10 seeds of few candidates, then many candidates."""
+def processes_plan() -> Iterator[Run]:
+    """Gaussian processes on the family, whose own arithmetic takes long."""
     for seed in range(SEEDS):
-        for budget in (FEW, SOME):
-            for subject in of_posts():
-                for method in rivals(OUTSIDE):
-                    yield Run(subject, method, budget, seed)
-    for subject in of_posts():
-        for method in rivals(AT_MANY):
-            yield Run(subject, method, MANY, 0)
+        for subject in of_posts():
+            yield Run(subject, "gp", FEW, seed)
+
+
+def rivals_plan(budget: int) -> Iterator[Run]:
+    """Other libraries' solvers on the family."""
+    for seed in range(SEEDS if budget < MANY else 1):
+        for subject in of_posts():
+            for method in rivals(OUTSIDE if budget < MANY else AT_MANY):
+                yield Run(subject, method, budget, seed)
 
 
 def simulator_plan() -> Iterator[Run]:
@@ -184,12 +208,11 @@ def simulator_plan() -> Iterator[Run]:
     """
     for subject in of_simulator():
         yield Run(subject, "moead-de", LONG, 100)
-    for seed in range(SEEDS):
-        yield from of_seed(of_simulator(), FEW, seed, OUTSIDE)
-        if seed < 3:
-            yield from of_seed(of_simulator(), SOME, seed, OUTSIDE)
-            for subject in of_simulator():
-                yield Run(subject, "gp", FEW, seed)
+        for seed in range(SEEDS):
+            yield from of_seed([subject], FEW, seed, OUTSIDE)
+            yield Run(subject, "gp", FEW, seed)
+    for seed in range(3):
+        yield from of_seed(of_simulator(), SOME, seed, OUTSIDE)
 
 
 def limits_plan() -> Iterator[Run]:
@@ -201,15 +224,28 @@ def limits_plan() -> Iterator[Run]:
             yield from of_seed(of_limits(), budget, seed, OUTSIDE)
         for subject in of_limits():
             yield Run(subject, "gp", FEW, seed)
-        if seed < 2:
-            yield from of_seed(of_limits(), MANY, seed, AT_MANY)
 
 
-def bayes_plan() -> Iterator[Run]:
-    """BoTorch on four of the problems, with 200 candidates."""
+def limits_many_plan() -> Iterator[Run]:
+    """Moves of the map with limits and many candidates; rivals, which take long, from one seed."""
     for seed in range(3):
-        for subject in (*of_posts()[1:6:4], *of_limits()[:2]):
-            yield Run(subject, "qLogNEHVI", FEW, seed)
+        yield from of_seed(of_limits(), MANY, seed)
+    for method in rivals(AT_MANY):
+        for subject in of_limits():
+            yield Run(subject, method, MANY, 0)
+
+
+def named_plan() -> Iterator[Run]:
+    """Problems that quietarm knows by name, against the program of twenty lines."""
+    for subject in of_names():
+        yield Run(subject, "gradient", 0, 0)
+    for seed in range(5):
+        for budget in (FEW, SOME):
+            yield from of_seed(of_names(), budget, seed)
+    for seed in range(3):
+        for subject in of_names():
+            yield Run(subject, "gp", FEW, seed)
+        yield from of_seed(of_names(), MANY, seed)
 
 
 def gradient_plan() -> Iterator[Run]:
@@ -221,10 +257,15 @@ def gradient_plan() -> Iterator[Run]:
 
 PLANS = {
     "posts": posts_plan,
-    "rivals": rivals_plan,
+    "many": many_plan,
+    "processes": processes_plan,
+    "rivals-200": partial(rivals_plan, FEW),
+    "rivals-1000": partial(rivals_plan, SOME),
+    "rivals-10000": partial(rivals_plan, MANY),
     "simulator": simulator_plan,
     "limits": limits_plan,
-    "bayes": bayes_plan,
+    "limits-10000": limits_many_plan,
+    "named": named_plan,
     "gradient": gradient_plan,
 }
 
@@ -232,6 +273,8 @@ PLANS = {
 def points_of(run: Run) -> Array:
     """Residuals [m] and energies [J] of the front of a run."""
     subject, method, candidates, seed = run
+    if method == "gradient" and subject.name.startswith("named "):
+        return problem_of(subject.name.removeprefix("named ")).reference().front.objective_values
     if method == "gradient" and subject.name not in family():
         front = qa.epsilon_front(*subject.search.args, **subject.search.keywords, points=POINTS)
         return np.array([(point.residual, point.energy) for point in front.points])
@@ -283,14 +326,19 @@ def read(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def run_plan(name: str, path: Path) -> None:
-    """Run what is missing of a plan; rows are kept after a minute, or twenty runs."""
-    done = {tuple(row[column] for column in COLUMNS[:4]) for row in read(path)}
+def keys_of(path: Path) -> set[tuple[str, ...]]:
+    """Return what tells the runs of a table from others."""
+    return {tuple(row[column] for column in COLUMNS[:4]) for row in read(path)}
+
+
+def run_plan(name: str, path: Path, first_seed: int) -> None:
+    """Run what is missing of a plan from a seed on; rows are kept after a minute or twenty runs."""
+    done = keys_of(path)
     rows = list[list[str]]()
     began = time.monotonic()
     rehearsed = set[str]()
     for run in PLANS[name]():
-        if run.key in done:
+        if run.key in done or run.seed < first_seed:
             continue
         if name in ("posts", "gradient") and run.subject.name not in rehearsed:
             move = family()[run.subject.name]  # compiled before the clock starts
@@ -301,6 +349,7 @@ def run_plan(name: str, path: Path) -> None:
         rows.append(row_of(run))
         if len(rows) >= 20 or time.monotonic() - began > 60:
             add(rows, path)
+            done = keys_of(path)  # another process may have added some
             rows = []
             began = time.monotonic()
     if rows:
@@ -326,14 +375,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("plans", nargs="*", default=[*PLANS, "basins"])
+    parser.add_argument(
+        "plans", nargs="*", choices=[*PLANS, "basins", []], default=[*PLANS, "basins"]
+    )
     parser.add_argument("--results", type=Path, default=RESULTS)
+    parser.add_argument("--from-seed", type=int, default=0, help="for processes side by side")
     options = parser.parse_args()
     for name in options.plans:
         if name == "basins":
             count_basins(options.results / "basins_optima.csv")
         else:
-            run_plan(name, options.results / "basins.csv.xz")
+            run_plan(name, options.results / "basins.csv.xz", options.from_seed)
     return 0
 
 

@@ -3,7 +3,7 @@
 Each asks a problem's recorded function for candidates until its budget is spent. The libraries are
 needed when one is run, in an environment of your own:
 
-    pip install cobyqa Py-BOBYQA PyNomadBBO comocma botorch
+    pip install cobyqa Py-BOBYQA PyNomadBBO comocma
 
 None is a dependency of quietarm.
 """
@@ -51,20 +51,17 @@ def twenty_lines(function: Any, seed: int, budget: int) -> None:
     """A (1+1)-ES with an archive, written anew: success rule, random parent, feasibility first."""
     random = np.random.default_rng(seed)
     of = OneByOne(function)
-    archive = list[tuple[float, Array, Array]]()  # violation, objectives, candidate
+    X, F, V = np.empty((0, of.count)), np.empty((0, 2)), np.empty(0)
     x, step = random.random(of.count), 0.3
     while True:
-        objectives, violations = of(x)
-        broken = float(np.maximum(violations, 0).sum())
-        beaten = any(v < broken or (v == broken and (f <= objectives).all()) for v, f, _ in archive)
-        if not beaten:
-            archive = [
-                (v, f, a) for v, f, a in archive
-                if v < broken or (v == broken and not (objectives <= f).all())
-            ]  # fmt: skip
-            archive.append((broken, objectives, x))
-        step = float(np.clip(step * (0.95 if beaten else 1.22), 2e-3, 0.5))
-        parent = archive[random.integers(len(archive))][2]
+        f, violations = of(x)
+        v = np.maximum(violations, 0).sum()
+        is_beaten = ((v > V) | ((v == V) & (f >= F).all(axis=1))).any()
+        if not is_beaten:
+            stays = (v > V) | ((v == V) & ~(f <= F).all(axis=1))
+            X, F, V = np.vstack([X[stays], x]), np.vstack([F[stays], f]), np.append(V[stays], v)
+        step = np.clip(step * (0.95 if is_beaten else 1.22), 2e-3, 0.5)
+        parent = X[random.integers(len(X))]
         x = np.clip(parent + step * random.standard_normal(of.count), 0, 1)
 
 
@@ -190,56 +187,11 @@ def como_cma_es(function: Any, seed: int, budget: int) -> None:
         moes.tell(candidates, values)
 
 
-def qlognehvi(function: Any, seed: int, budget: int) -> None:
-    """Expected hypervolume improvement (Daulton and others 2021) by BoTorch, four at a time."""
-    import torch
-    from botorch import fit_gpytorch_mll
-    from botorch.acquisition.multi_objective.logei import qLogNoisyExpectedHypervolumeImprovement
-    from botorch.acquisition.multi_objective.objective import IdentityMCMultiOutputObjective
-    from botorch.models import ModelListGP, SingleTaskGP
-    from botorch.models.transforms import Standardize
-    from botorch.optim import optimize_acqf
-    from botorch.sampling import SobolQMCNormalSampler
-    from gpytorch.mlls import SumMarginalLogLikelihood
-
-    warnings.simplefilter("ignore")
-    torch.manual_seed(seed)
-    torch.set_num_threads(1)
-    of = OneByOne(function)
-    X = torch.rand(20, of.count, dtype=torch.double)
-    told = [of(x.numpy()) for x in X]
-    while True:
-        F = torch.tensor(np.array([-np.log(np.maximum(f, 1e-9)) for f, _ in told]))
-        V = torch.tensor(np.array([v for _, v in told]))
-        Y = torch.cat([F, V], dim=1)
-        models = [
-            SingleTaskGP(X, column[:, None], outcome_transform=Standardize(1)) for column in Y.T
-        ]
-        model = ModelListGP(*models)
-        fit_gpytorch_mll(SumMarginalLogLikelihood(model.likelihood, model))
-        feasible = F[(V <= 0).all(dim=1)]
-        corner = (feasible if len(feasible) else F).min(dim=0).values
-        acquisition = qLogNoisyExpectedHypervolumeImprovement(
-            model, corner.tolist(), X, prune_baseline=True,
-            sampler=SobolQMCNormalSampler(torch.Size([64]), seed=seed),
-            objective=IdentityMCMultiOutputObjective(outcomes=[0, 1]),
-            constraints=[lambda y, i=i: y[..., 2 + i] for i in range(V.shape[1])] or None,
-        )  # fmt: skip
-        box = torch.stack([torch.zeros(of.count), torch.ones(of.count)]).double()
-        new, _ = optimize_acqf(
-            acquisition, box, q=4, num_restarts=4, raw_samples=64, sequential=True,
-            options={"maxiter": 50},
-        )  # fmt: skip
-        told += [of(x.numpy()) for x in new]
-        X = torch.cat([X, new])
-
-
 RIVALS: dict[str, Callable[[Any, int, int], None]] = {
     "(1+1)-ES of twenty lines": twenty_lines,
     "COBYQA": cobyqa,
     "Py-BOBYQA": pybobyqa,
     "DMulti-MADS": nomad,
     "COMO-CMA-ES": como_cma_es,
-    "qLogNEHVI": qlognehvi,
 }
 """By the name that tables have."""

@@ -10,6 +10,7 @@ is in each post) to methods that see values alone, and their derivatives to the 
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from dataclasses import dataclass
 from functools import cached_property
@@ -292,7 +293,9 @@ class PostsMove:
 
 
 def compiled(name: str, inputs: list[Any], outputs: list[Any]) -> ca.Function:
-    """A function of CasADi, compiled by the machine's C compiler."""
+    """A function of CasADi, compiled where the machine has gcc."""
+    if shutil.which("gcc") is None:
+        return ca.Function(name, inputs, outputs)
     folder = f"{tempfile.gettempdir()}/"
     flags = {"flags": ["-O2"], "temp_suffix": True, "cleanup": True, "directory": folder}
     return ca.Function(

@@ -34,13 +34,13 @@ def chain(move: PostsMove, seed: int) -> Array:
     motions = dict[float, Array]()
     while not motions:
         start = random.uniform(move.lower, move.upper)
-        cheapest = least_energy(move, start, np.inf)
+        cheapest, _ = least_energy(move, start, np.inf)
         if is_free(move, cheapest):
             motions[1.0] = cheapest
     reach = float(move(motions[1.0])[0][0, 0])
     for share in islice(falling_shares(), POINTS - 1):
         above = min(solved for solved in motions if solved > share)
-        found = least_energy(move, motions[above], share * reach)
+        found, _ = least_energy(move, motions[above], share * reach)
         if is_free(move, found):
             motions[share] = found
     return move(np.array(list(motions.values())))[0]
@@ -51,8 +51,8 @@ def is_free(move: PostsMove, candidate: Array) -> bool:
     return bool((move(candidate)[1] <= 0).all())
 
 
-def least_energy(move: PostsMove, start: Array, limit: float) -> Array:
-    """The end of SLSQP from a start, within a limit of the residual."""
+def least_energy(move: PostsMove, start: Array, limit: float) -> tuple[Array, bool]:
+    """The end of SLSQP from a start, within a limit of the residual; and whether it converged."""
     known = dict[str, Any]()
 
     def at(x: Array) -> tuple[Array, Array]:
@@ -77,7 +77,7 @@ def least_energy(move: PostsMove, start: Array, limit: float) -> Array:
         bounds=list(zip(move.lower, move.upper, strict=True)), constraints=constraints,
         method="SLSQP", options={"ftol": 1e-8, "maxiter": 200},
     )  # fmt: skip
-    return np.clip(result.x, move.lower, move.upper)
+    return np.clip(result.x, move.lower, move.upper), bool(result.success)
 
 
 def basins(move: PostsMove) -> dict[str, Any]:
@@ -90,9 +90,10 @@ def basins(move: PostsMove) -> dict[str, Any]:
     random = np.random.default_rng(64)
     found = list[tuple[float, tuple[int, ...]]]()
     for start in random.uniform(move.lower, move.upper, (STARTS, move.size)):
-        end = least_energy(move, start, WITHIN)
+        end, converged = least_energy(move, start, WITHIN)
         (values,), violations = move(end)
-        if values[0] <= WITHIN * (1 + 1e-3) and (violations <= 0).all():
+        kept = values[0] <= WITHIN * (1 + 1e-3)
+        if converged and kept and (violations <= 0).all():
             found.append((float(values[1]), move.way(end)))
     optima = list[tuple[float, tuple[int, ...]]]()
     for energy, way in sorted(found):

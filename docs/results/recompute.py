@@ -29,6 +29,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata, spearmanr, wilcoxon
 
+sys.path.append(str(Path(__file__).parent))
+from recompute_basins import basins_figures
+
 Array = NDArray[np.float64]
 CORNER = 1.1
 """Areas are dominated up to here, where a problem's scale goes from 0 to 1."""
@@ -1573,6 +1576,7 @@ def compute(folder: Path) -> dict[str, Any]:
         },
         "profiles": runtime_profiles(results),
         "black_box": black_box_figures(folder),
+        "basins": basins_figures(folder),
         "prediction": {
             measure: prediction(results, 10_000, crossed, measure)
             for measure in MEASURES

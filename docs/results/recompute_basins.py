@@ -22,15 +22,21 @@ from scipy.stats import wilcoxon
 
 Array = NDArray[np.float64]
 CORNER = 1.1
-LEAST_SEEDS = 3
+LEAST_SEEDS = 2
 """Runs of every problem without which a method is in no table."""
 GRADIENT, DIFFERENCES = "gradient", ("slsqp", "slsqp random starts")
 CLEARLY = 0.1
 """Per cent by which a median has to be smaller to count."""
 TWENTY = "(1+1)-ES of twenty lines"
-OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES", "qLogNEHVI")
-FAMILIES = {"posts": "posts-", "simulated": "simulated-", "limits": ""}
-"""What the names of their problems begin with."""
+OUTSIDE = ("COBYQA", "Py-BOBYQA", "DMulti-MADS", "COMO-CMA-ES")
+FAMILIES = {
+    "posts": "posts-",
+    "simulated": "simulated-post-4",
+    "anecdotes": "simulated-",
+    "named": "named ",
+    "limits": "",
+}
+"""What the names of their problems begin with; anecdotes have one seed and are left out."""
 Gaps = dict[tuple[str, int], dict[str, list[float]]]
 """By method and candidates, then by problem: a gap for each seed."""
 
@@ -78,6 +84,18 @@ def area(points: Array) -> float:
     return float(moocore.hypervolume(points, ref=[CORNER] * 2)) if len(points) else 0.0
 
 
+def even(points: Array, most: int = 50) -> Array:
+    """At most so many points of a front, at even distances along it."""
+    front = moocore.filter_dominated(points)
+    front = front[np.argsort(front[:, 0])]
+    if len(front) <= most:
+        return front
+    steps = np.diff(front / np.ptp(front, axis=0), axis=0)
+    along = np.append(0.0, np.cumsum(np.hypot(*steps.T)))
+    places = np.searchsorted(along, np.linspace(0.0, along[-1], most))
+    return front[np.unique(places.clip(0, len(front) - 1))]
+
+
 def with_all_starts(runs: Sequence[Run]) -> list[Run]:
     """The gradient's fronts from single starts, and of each problem the one of all together."""
     starts = defaultdict[str, list[Run]](list)
@@ -87,7 +105,7 @@ def with_all_starts(runs: Sequence[Run]) -> list[Run]:
     together = [
         Run(
             problem, f"{GRADIENT}, all starts", 0, 0, sum(run.seconds for run in of_problem),
-            np.vstack([run.points for run in of_problem]),
+            even(np.vstack([run.points for run in of_problem])),
         )
         for problem, of_problem in starts.items()
     ]  # fmt: skip
@@ -212,17 +230,22 @@ def cell(gaps: Gaps, seconds: Any, candidates: int) -> dict[str, Any]:
         "own": own,
         "against_slsqp": tests,
         "search_against_slsqp": tests[search["method"]],
+        "outside": outside,
+        "outside_against_own": {},
+        "outside_wins": [],
+        "twenty": twenty,
+        "twenty_against_own": {},
+        "twenty_wins": [],
+        "beaten_by_twenty": [],
     }
     known_outside = [name for name in names if name in OUTSIDE]
     if outside:
         result |= {
-            "outside": outside,
             "outside_against_own": compared(known_outside, own["method"]),
             "outside_wins": winners(known_outside),
         }
     if twenty:
         result |= {
-            "twenty": twenty,
             "twenty_against_own": against(
                 gaps[TWENTY, candidates], gaps[own["method"], candidates]
             ),
@@ -260,7 +283,7 @@ def basins_figures(folder: Path) -> dict[str, Any]:
     figures: dict[str, Any] = {"runs": len(runs), "hours": sum(run.seconds for run in runs) / 3600}
     for family in FAMILIES:
         of_family = [run for run in runs if family_of(run.problem) == family]
-        if not of_family:
+        if not of_family or family == "anecdotes":
             continue
         gaps, seconds = gaps_of(of_family)
         budgets = sorted({run.candidates for run in of_family} - {0})
