@@ -29,9 +29,14 @@ def test_limits_of_a_gripper_are_no_limits_of_the_move(folder, call):
 
 def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call):
     file = write_robot(folder, ARM, ARM_FILE, "a: {max_acceleration: 8}")
-    assert call(f"evaluate robot.yaml {MOVE} --torque-limit a=90 --output plan.json")[0] == 0
+    limits = "--torque-limit a=90 --speed-limit b=170"
+    code, out, _ = call(f"evaluate robot.yaml {MOVE} {limits} --output plan.json")
+    assert code == 0
+    far = "warning: speed limit far above the URDF's: b 170 rad/s (URDF 3); were degrees meant?"
+    assert far in _words(out)
+    assert out.count("far above") == 1
     path = qa.GeometricPath.line([0.0, 0.0], [0.4, 0.3], joints=("a", "b"))
-    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0})
+    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0}, speed_limit={"b": 170.0})
     assert qa.Plan.load("plan.json").task == task
     assert [limit.name for limit in task.limits] == ["torque", "speed", "acceleration"]
 
