@@ -213,7 +213,11 @@ def evaluate_as_timed(
     robot = instance("robot", robot, Robot)
     window = positive("residual_window", residual_window, "s")
     motion = trajectory if isinstance(trajectory, TimedMotion) else TimedMotion.load(trajectory)
+    moving = moves_undriven(robot, motion.joints, motion.points)
     motion = motion.of_joints(robot.joints)
+    motion = replace(
+        motion, remarks=(*motion.remarks, *(f"warning: {words}" for words in moving))
+    )
     robot.check_positions(motion.points)
     equations = RobotInTime(robot.finer, stiffness, payload)
     figures = _followed(equations, motion, window, energy)

@@ -91,18 +91,22 @@ def test_waypoints_are_blended_and_taken_in_part(folder, call, refused):
     Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
     code, out, _ = call("list robot.yaml --path points.csv --waypoints 2:4 --blend 5mm")
     assert code == 0
-    assert re.search(r"waypoint 2 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
+    assert re.search(r"waypoint 3 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
     first, *_ = lines = out.splitlines()
     assert re.match(r"arm, 2 driven joints: along the path it swings at .* Hz, and sags by", first)
     assert max(len(line.rstrip()) for line in lines) <= 100
     assert out.count("\npath") == 1
-    assert "waypoint 3" not in out
+    assert "waypoint 2" not in out  # they are numbered as in the file
     for words, remedy in (
         ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, such as 2:4"),
         ("--waypoints 3:9", "path points.csv: waypoints 3:9 are none of 4; give the numbers of"),
         ("--blend 5mm --path-tolerance 1deg", "--path-tolerance is for a spline, and --blend"),
     ):
         assert remedy in refused(f"list robot.yaml --path points.csv {words}")
+    Path("back.csv").write_text("a,b\n0,0\n0.2,0.1\n0.5,0.3\n0.2,0.1\n0.6,0.8\n")
+    for words in ("", " --path-tolerance 0.001", " --blend 5mm"):
+        error = refused(f"list robot.yaml --path back.csv --waypoints 2:5{words}")
+        assert "the path turns back at waypoint 3, a corner" in error
 
 
 @pytest.mark.slow
