@@ -137,9 +137,7 @@ def _far_above_urdf(robot: Robot, task: PointToPoint, typed: list[str]) -> list[
         if f"{limit.name}_limit" in typed
     }
     of_file = [note.words for note in robot.notes]
-    return [
-        f"warning: {words}" for words in far_above_urdf(robot, limits) if words not in of_file
-    ]
+    return [f"warning: {words}" for words in far_above_urdf(robot, limits) if words not in of_file]
 
 
 def _read_asked(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:

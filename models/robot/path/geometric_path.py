@@ -625,8 +625,8 @@ def _without_repeated(points: Array, share: float = _NEAR, first: int = 1) -> _K
             kept.append(number)
             continue
         remarks.append(
-            f"waypoints {kept[-1] + first} and {number + first} are {way:.2g} rad (or m) apart and taken "
-            "as one"
+            f"waypoints {kept[-1] + first} and {number + first} are {way:.2g} rad (or m) apart and "
+            "taken as one"
         )
         if number == len(points) - 1 and kept[-1] > 0:
             kept[-1] = number

@@ -157,13 +157,31 @@ LAW = partial(trapezoid, 0.25, duration=0.6)
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("option", "offers"), [
+    ("", ["feasible with all else unchanged: residual limit 0.00", "acceleration limit 1",
+          "rad/s^2 at a"]),
+    (" --error payload=10% --residual-limit 0.01mm", ["may be feasible", "residual limit 0.00"]),
+])  # fmt: skip
+def test_what_would_do_may_be_a_limit_that_is_of_no_joint(folder, refused, option, offers):
+    """No rigid joint is too slow here; the residual, of no joint, is beside a joint's limit."""
+    write_robot(folder, ARM, f"{ARM_FILE}limits: urdf\n")
+    line = "plan robot.yaml --start=0,0 --target=0.5,0.4 --duration 0.6 --terms 4"
+    error = refused(f"{line} --acceleration-limit 8{option}", status=1)
+    assert "found no motion of 4 terms with" in error
+    for words in offers:
+        assert words in error
+
+
+@pytest.mark.slow
 def test_a_trajectory_is_judged_as_it_is_timed(folder, call):
     """Its figures, the limits that it passes, and what makes it ring."""
     write_robot(folder, ARM, ARM_FILE, "a: {has_jerk_limits: true, max_jerk: 900}")
-    Path("moveit.yaml").write_text(trajectory_text(("a", "b"), [0, 0.1], [1.0, 0.6], 0.6, LAW))
+    text = trajectory_text(("a", "b", "grip"), [0, 0.1, 0.01], [1, 0.6, 0.03], 0.6, LAW)
+    Path("moveit.yaml").write_text(text)
     code, out, _ = call("evaluate robot.yaml --path moveit.yaml --as-timed")
     words = _words(out)
     assert code == 0
+    assert "warning: joint 'grip' moves by 0.02 m, and the robot's file does not drive it" in words
     assert "arm, as it is timed in 0.6 s" in words
     assert "(beyond the limit of a 900)" in words
     assert "step the acceleration of a jumps by" in words
