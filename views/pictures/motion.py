@@ -248,9 +248,10 @@ def curves(motion: Plan | Floor, quantity: str) -> list[Array]:
 def short_curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     """The curves of a quantity; of a tip that moves in space one, its distance from rest."""
     lines = curves(motion, quantity)
-    if not is_distance(motion.task.plant, quantity):
+    across = motion.task.plant.tip_lines
+    if across is None or not is_distance(motion.task.plant, quantity):
         return lines
-    return [np.abs(motion.task.plant.tip_lines @ np.array(lines)).max(axis=0)]
+    return [np.abs(across @ np.array(lines)).max(axis=0)]
 
 
 def is_distance(plant: Plant, quantity: str) -> bool:

@@ -256,8 +256,8 @@ class GeometricPath:
         except _NotSmoothError:
             nearest = int(np.diff(places).argmin())
             raise ValueError(
-                f"waypoints {numbers[nearest]} and {numbers[nearest + 1]} are too near each other for a spline: "
-                f"{np.diff(places).min():.2g} of the path; leave one of them out"
+                f"waypoints {numbers[nearest]} and {numbers[nearest + 1]} are too near each other "
+                f"for a spline: {np.diff(places).min():.2g} of the path; leave one of them out"
             ) from None
         return replace(path, remarks=remarks)
 
@@ -367,7 +367,8 @@ class GeometricPath:
         except _TurnsBackError as error:
             at = int(np.abs(given - error.point).sum(axis=1).argmin())
             raise _TurnsBackError(first + at, error.point) from None
-        words = f"{words.format(len(given))}, within {tolerance:.3g} rad (or m) of the lines between all"
+        near = f"within {tolerance:.3g} rad (or m) of the lines between all"
+        words = f"{words.format(len(given))}, {near}"
         lines = tuple(map(tuple, _few_lines(points, tolerance).tolist()))
         return replace(path, lines=lines, remarks=(*remarks, words))
 
