@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from quietarm.models import GeometricPath, Robot, TimedMotion
 from quietarm.models.number_checks import finite, listed, not_negative, positive, quoted, whole
 from quietarm.models.robot.path.joint_table import JointTable, table_of_message
+from quietarm.models.robot.path.not_driven import moves_undriven
 from quietarm.models.robot.urdf.following import Following
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -218,8 +219,6 @@ _LONGER = (1.0, 1.1, 1.25, 1.5, 2.0, 3.0)
 """Multiples of a duration that are tried in turn."""
 _REST = 1e-3
 """Speed [rad/s or m/s] that counts as rest at the ends of a message."""
-_STILL = 1e-5
-"""How far a joint that is not driven may move [rad or m]."""
 _AT_START = 0.01
 """How far the first point may be from the start state, as MoveIt allows [rad or m]."""
 
@@ -275,6 +274,8 @@ def _others(robot: Robot, table: JointTable) -> dict[str, float | Following]:
             f"the message is of the joints {listed(table.joints)}, without {listed(missing)}, "
             "which the robot's file drives; plan for a group of these as well"
         )
+    if moving := moves_undriven(robot, table.joints, table.positions):
+        raise ValueError(moving[0])
     others = dict[str, float | Following]()
     followers = robot.followers
     for name, positions in zip(table.joints, table.positions.T):
@@ -283,11 +284,6 @@ def _others(robot: Robot, table: JointTable) -> dict[str, float | Following]:
         if name in followers and followers[name].leader in robot.joints:
             others[name] = followers[name]
             continue
-        if np.ptp(positions) > _STILL:
-            raise ValueError(
-                f"joint {quoted(name)} moves by {np.ptp(positions):.3g} rad (or m), and the "
-                f"robot's file does not drive it; add it to joints, beside {listed(robot.joints)}"
-            )
         others[name] = float(positions[0])
     return others
 

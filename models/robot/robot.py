@@ -54,6 +54,7 @@ from quietarm.models.robot.on_path.path_tables import (
 from quietarm.models.robot.on_path.robot_figure import robot_figure_of
 from quietarm.models.robot.on_path.tip_way import way_of
 from quietarm.models.robot.path.geometric_path import GeometricPath
+from quietarm.models.robot.path.not_driven import moves_undriven
 from quietarm.models.robot.path.straight_line import tip_beside_lines
 from quietarm.models.robot.robot_file import read_robot
 from quietarm.models.robot.robot_notes import notes_of, notes_of_fit
@@ -241,9 +242,13 @@ class Robot(CheckedRobot):
                 f"the path is of {path.count} joints, and the robot drives {len(names)}, "
                 f"{listed(names)}; give positions of these, in this order"
             )
-        if path.joints and path.joints != names:
-            path = path.of_joints(names)
         places = np.linspace(0.0, 1.0, 1001)
+        if path.joints and path.joints != names:
+            moving = tuple(
+                f"warning: {words}" for words in moves_undriven(self, path.joints, path(places))
+            )
+            path = path.of_joints(names)
+            path = replace(path, remarks=(*path.remarks, *moving))
         for name, (least, most), column in zip(names, self.ranges(), path(places).T):
             beyond = np.maximum(column - most, least - column)
             if beyond.max() > _OVER:

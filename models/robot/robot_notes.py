@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from quietarm.models.dimensions import ACCELERATION, EFFORT, JERK, SPEED
 from quietarm.models.notes import Note
 from quietarm.models.number_checks import quoted
 from quietarm.models.robot.dynamics.measured_fit import MeasuredFit
-from quietarm.models.robot.dynamics.robot_parts import RobotParts
+from quietarm.models.robot.dynamics.robot_parts import Limits, RobotParts
 from quietarm.models.robot.urdf.following import (
     held_position,
     limits_with_followers,
@@ -25,6 +26,16 @@ _MOST_DAMPING = 0.1
 _STIFFEST = 2.0
 """So many times stiffer, or softer, may springs be than in a file without a word."""
 
+_TIMES_THE_URDFS = 3.0
+"""A limit that is so many times the URDF's own is in another unit, most likely."""
+_OF_LIMIT = {
+    "torque": ("effort", EFFORT),
+    "speed": ("velocity", SPEED),
+    "acceleration": ("acceleration", ACCELERATION),
+    "jerk": ("jerk", JERK),
+}
+"""Entries of the URDF, and units, by quantity."""
+
 
 def notes_of(robot: RobotParts) -> tuple[Note, ...]:
     """Return all notes that follow from what a robot is made of."""
@@ -39,6 +50,8 @@ def notes_of(robot: RobotParts) -> tuple[Note, ...]:
         *_without_ranges(robot),
         *_decelerations(robot),
         *_much_damping(robot),
+        *_material(robot),
+        *(Note(words) for words in far_above_urdf(robot, robot.limits)),
     )
 
 
@@ -199,3 +212,44 @@ def _much_damping(robot: RobotParts) -> Iterator[Note]:
                 f"{what} is {100 * ratio:.4g} %, which is much; was {ratio:.4g} % meant? give "
                 f"{ratio:.4g}%"
             )
+
+
+def _material(robot: RobotParts) -> Iterator[Note]:
+    if robot.beam is not None and robot.beam.hint_of_material:
+        yield Note(robot.beam.hint_of_material)
+
+
+def far_above_urdf(robot: RobotParts, limits: Limits) -> Iterator[str]:
+    """Words on limits that are several times the URDF's own, in degrees most likely."""
+    urdf = robot.description
+    for quantity, (entry, unit) in _OF_LIMIT.items():
+        of_urdf = limits_with_followers(urdf, entry, robot.held)
+        if quantity == "torque":  # a follower has no motor of its own
+            of_urdf = {name: joint.effort for name, joint in urdf.joints.items()}
+        far = {
+            name: size
+            for name, size in limits.get(quantity, {}).items()
+            if 0 < _TIMES_THE_URDFS * of_urdf.get(name, 0.0) < size
+        }
+        if not far:
+            continue
+        units = {name: unit.of(robot.kind_of(name)) for name in far}
+        listed = [
+            f"{name} {size:.4g} {units[name]} (URDF {of_urdf[name]:.4g})"
+            for name, size in far.items()
+        ]
+        name, size = next(iter(far.items()))
+        yield (
+            f"{quantity} limit far above the URDF's: {first_of(listed)}; "
+            f"{_unit_meant(quantity, size, units[name])}"
+        )
+
+
+def _unit_meant(quantity: str, size: float, unit: str) -> str:
+    """Ask which unit was meant, with the limit in that of the URDF."""
+    if quantity == "torque":
+        return "is it right?"
+    if unit.startswith("rad"):
+        in_degrees = f"{size:.4g} {unit.replace('rad', 'deg', 1)}"
+        return f"were degrees meant? {in_degrees} are {np.deg2rad(size):.4g} {unit}"
+    return f"were millimetres meant? {size:.4g} m{unit} are {1e-3 * size:.4g} {unit}"

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from quietarm.models import Expression, GeometricPath, JointMotion, Robot
 from quietarm.models.robot.on_path.full import RobotInTime
 from quietarm.models.robot.path.geometric_path import USUAL_TOLERANCE
+from quietarm.models.robot.path.not_driven import moves_undriven
 from quietarm.models.robot.path.timed_motion import TimedMotion
 from quietarm.ocp.checks import instance, positive, takes
 from quietarm.ocp.energy import ABSOLUTE_POWER, Energy
@@ -213,7 +214,9 @@ def evaluate_as_timed(
     robot = instance("robot", robot, Robot)
     window = positive("residual_window", residual_window, "s")
     motion = trajectory if isinstance(trajectory, TimedMotion) else TimedMotion.load(trajectory)
+    moving = moves_undriven(robot, motion.joints, motion.points)
     motion = motion.of_joints(robot.joints)
+    motion = replace(motion, remarks=(*motion.remarks, *(f"warning: {words}" for words in moving)))
     robot.check_positions(motion.points)
     equations = RobotInTime(robot.finer, stiffness, payload)
     figures = _followed(equations, motion, window, energy)

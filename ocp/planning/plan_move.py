@@ -16,7 +16,7 @@ from quietarm.ocp.planning.plan import Plan, only_motion
 from quietarm.ocp.planning.plan_along import plan_along
 from quietarm.ocp.planning.remedies import offers_for
 from quietarm.ocp.planning.request import Request
-from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_too_short
+from quietarm.ocp.planning.too_short import arrives_at_rest, refuse_to_hold, refuse_too_short
 from quietarm.ocp.profiles.cycloid import CycloidPolynomial
 from quietarm.ocp.profiles.joint_profile import JointProfile
 from quietarm.ocp.solvers.solver import Solver
@@ -106,9 +106,12 @@ def plan_move(
         request = request.from_guess(guess)
     if takes_its_profile:
         return plan_on_chosen_profile(request)
+    refuse_to_hold(task)  # with what holds it, at once
     try:
         refuse_too_short(task, arrives_at_rest(task, request.residual_limit))
     except InfeasibleTaskError as error:
+        if len(task.plant.joint_names) > 1:  # a robot's offers take up to a minute
+            raise
         offers = offers_for(request.problem(), request.guesses, solver)
         raise InfeasibleTaskError(error.what, offers) from None
     return plan_along(request)

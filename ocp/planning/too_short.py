@@ -6,21 +6,25 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quietarm.ocp.errors import InfeasibleTaskError
 from quietarm.ocp.joint_words import above_words, beyond, joint_peaks
-from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
+from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED, Limit
 from quietarm.ocp.planning.certify import OVERRUN
 from quietarm.ocp.planning.rigid_motion import rigid_duration, rigid_durations
 from quietarm.ocp.planning.rigid_pass import least_duration, values_at_rest
 from quietarm.ocp.task import PointToPoint
 
+Array = NDArray[np.float64]
 _OF_A_RIGID_JOINT = ("speed", "acceleration", "jerk", TORQUE_SPEED)
 _NO_MOVE = 1e3
 """So many times longer is no other duration of the same move: a unit was mistaken."""
 _SURE = 0.95
 """Share of the least duration by torque and deflection that is surely too short: the equations are
 not quite linear, and the bound is a sum over places."""
+_ROOM = 1.001
+"""A limit that holds is quoted with this margin, so that its digits hold as well."""
 
 
 def arrives_at_rest(task: PointToPoint, residual_limit: float) -> bool:
@@ -100,7 +104,10 @@ def _needed(task: PointToPoint, at_rest: bool, rounds: int = 12) -> str:
 
 
 def refuse_to_hold(task: PointToPoint) -> None:
-    """InfeasibleTaskError where a limit is passed by the machine that stands still at an end."""
+    """InfeasibleTaskError where a limit is passed by the machine that stands still at an end.
+
+    It has the limit that holds the machine at both ends.
+    """
     for limit in task.limits:
         if limit.quantity.derivative is not None:
             continue
@@ -113,5 +120,20 @@ def refuse_to_hold(task: PointToPoint) -> None:
                 of_one = f"{limit.describe(peak)}, above its limit of {limit.bounds}"
                 raise InfeasibleTaskError(
                     f"to stand still at its {place} the machine takes {limit.label} "
-                    f"{passed or of_one}; give a wider limit or another {place}"
+                    f"{passed or of_one}; give a {_that_holds(task, limit, values)}, or another "
+                    f"{place}"
                 )
+
+
+def _that_holds(task: PointToPoint, limit: Limit, values: Array) -> str:
+    """The limit with which the machine can stand still at both ends, in words: a move takes more.
+
+    `values` are those at rest, shape (rows, 2).
+    """
+    ranges = np.column_stack([values.min(axis=1), values.max(axis=1)])
+    peaks = beyond(joint_peaks(limit, task.plant, ranges), OVERRUN)
+    if peaks:
+        holding = " and ".join(peak.times(_ROOM) for peak in peaks)
+        return f"{limit.label} limit of at least {holding}"
+    largest = float(limit.peak(values.min(initial=0.0), values.max(initial=0.0)))
+    return f"{limit.label} limit of at least {limit.describe(_ROOM * largest)}"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from quietarm.models import Plant, Robot, RobotOnPath
+from quietarm.models.robot.robot_notes import far_above_urdf
 from quietarm.ocp import PointToPoint, Uncertainty
 from quietarm.ocp.limits import QUANTITIES, TORQUE_SPEED
 from quietarm.ocp.simulation.servo import as_held
@@ -117,9 +118,26 @@ def _make_task(given: Given, kind: Kind, asked: Asked) -> PointToPoint:
     if task.plant.drive is not None and task.plant.drive.has_loops:
         as_held(task.plant, task.target)  # refuses a frequency that is of no structure on the servo
     warn_of_payload(kind, plant, asked.values)
+    if isinstance(kind, Robot):
+        typed_limits = [name for name, limit in typed.items() if limit is not None]
+        given.remarks += _far_above_urdf(kind, task, typed_limits)
     if isinstance(kind, Robot) and not _shows_rows(given):
         warn_of_notes(plant)
     return task
+
+
+def _far_above_urdf(robot: Robot, task: PointToPoint, typed: list[str]) -> list[str]:
+    """Words on limits that were typed and are several times those of the URDF."""
+    several = len(robot.joints) > 1
+    limits = {
+        limit.name: {joint.name: joint.upper for joint in limit.bounds_of_joints(task.plant)}
+        if several
+        else dict.fromkeys(robot.joints, limit.upper)
+        for limit in task.limits
+        if f"{limit.name}_limit" in typed
+    }
+    of_file = [note.words for note in robot.notes]
+    return [f"warning: {words}" for words in far_above_urdf(robot, limits) if words not in of_file]
 
 
 def _read_asked(given: Given, kind: Kind, known: Mapping[str, float]) -> Asked:

@@ -81,7 +81,10 @@ def _blended(given: Given, robot: Robot) -> GeometricPath:
     radius = radii[0] if len(radii) == 1 else radii
     try:
         table = table.between(some)
-        path = GeometricPath.blended(robot, table.positions, radius, joints=table.joints)
+        first = 1 if some is None else some[0]
+        path = GeometricPath.blended(
+            robot, table.positions, radius, joints=table.joints, first=first
+        )
     except ValueError as error:
         raise ValueError(f"path {given.path}: {error}") from None
     return replace(path, remarks=(*table.remarks, *path.remarks))

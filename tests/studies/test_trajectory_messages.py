@@ -85,7 +85,7 @@ def test_the_answer_is_a_message_of_the_same_joints_along_the_same_path(robot, m
             lambda m: m["trajectory"]["joint_trajectory"]["points"][4]["positions"].__setitem__(
                 1, 0.03
             ),
-            "joint 'grip' moves by 0.01 rad (or m), and the robot's file does not drive it; add",
+            "joint 'grip' moves by 0.01 m, and the robot's file does not drive it, but holds it at",
         ),
         (
             lambda m: m["trajectory_start"]["joint_state"]["position"].__setitem__(0, 0.2),

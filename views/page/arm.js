@@ -103,7 +103,9 @@ const drawSwing = () => {
   const [left, right, y] = [14, width - 14, 27];
   swing.x = (value) => left + ((value - axis.low) / (axis.high - axis.low)) * (right - left);
   const shown = axis.unit(unit);
-  const words = band && width > 400 ? `tip displacement [${shown}]; bands: its range after arrival` : `tip displacement [${shown}]${band ? "; bands: after arrival" : ""}`;
+  const { title } = panels.deflection;
+  const heading = `${title[0].toLowerCase()}${title.slice(1)} [${shown}]`;
+  const words = band && width > 400 ? `${heading}; bands: its range after arrival` : `${heading}${band ? "; bands: after arrival" : ""}`;
   draw(svg, "text", { x: 0, y: 11 }, words);
   draw(svg, "line", { x1: left, x2: right, y1: y, y2: y, stroke: "var(--grid)", "stroke-width": 2 });
   for (const [value, word] of axis.ticks) {
@@ -116,7 +118,7 @@ const drawSwing = () => {
   swing.band = setAll(bandOf("var(--this)", 9), { "fill-opacity": 0.3 });
   swing.ghost = ofCycloid(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5, fill: "var(--cycloid)" }));
   swing.dots = ofChosen(panels.deflection.rows).map(() => draw(svg, "circle", { cy: y, r: 5.5, fill: "var(--this)", stroke: "var(--card)", "stroke-width": 1.5 }));
-  svg.setAttribute("aria-label", "Tip displacement at this time, and its range after arrival");
+  svg.setAttribute("aria-label", `${title} at this time, and its range after arrival`);
 };
 const placeBand = (rect, residual) => {
   const [from, to] = swing.ends(residual).map(swing.x);

@@ -38,10 +38,11 @@ from quietarm.views.page.samples import needed_samples, packed, shapes_of
 from quietarm.views.pictures.grammar import BLUE, FAINT, INK, MEANINGS, OTHERS, Look, looks
 from quietarm.views.pictures.motion import (
     Line,
-    heading,
+    is_distance,
     limits_in_sight,
     names_of_curves,
     short_curves,
+    short_heading,
 )
 from quietarm.views.pictures.space import ELEVATION, Room
 from quietarm.views.pictures.structure import DrawnPart, Structure, structures_of
@@ -346,7 +347,7 @@ def _part(part: DrawnPart) -> dict[str, Any]:
 def _panel(move: Move, quantity: str, values: Array) -> dict[str, Any]:
     """Curves over time: of several joints or tips one is shown, by its name."""
     plant = move.task.plant
-    title, _, unit = heading(quantity, plant.joint, plant.tip_unit).partition(" [")
+    title, _, unit = short_heading(plant, quantity).partition(" [")
     count = values.shape[1]
     peaks = np.abs(values).max(axis=(0, 2))
     return {
@@ -366,7 +367,7 @@ def _names(plant: Plant, quantity: str) -> list[str]:
 
 def _limits(move: Move, quantity: str, values: Array, curve: int) -> list[float]:
     """The limits of a joint or a tip that its curves come near."""
-    if quantity in ("power", "angle"):
+    if quantity in ("power", "angle") or is_distance(move.task.plant, quantity):
         return []
     lines = [Line(plan, "") for plan in move.motions]
     return limits_in_sight(lines, quantity, values[:, curve].ravel(), curve)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -143,7 +143,7 @@ def _drawn() -> list[str]:
 
 def draw_briefly(motions: Motions, quantity: str, ax: Axes) -> Axes:
     """Draw a quantity as `draw_quantity`, of a tip that moves in space its distance alone."""
-    return _draw(lines_of(motions), quantity, axes_or_new(ax), curves_of=short_curves)
+    return _draw(lines_of(motions), quantity, axes_or_new(ax), is_short=True)
 
 
 def _draw(
@@ -151,15 +151,15 @@ def _draw(
     quantity: str,
     ax: Axes,
     curve: int | None = None,
-    curves_of: Callable[[Plan | Floor, str], list[Array]] | None = None,
+    is_short: bool = False,
 ) -> Axes:
     """Draw all curves of a quantity, or the one of a joint or a tip by its number."""
-    curves_of = curves_of or curves
+    curves_of = short_curves if is_short else curves
     if quantity not in drawn_quantities():
         return _draw_own(lines, known_panels(drawn_quantities())[quantity], ax)
     plant = lines[0].plan.task.plant
     drawn = list[Array]()
-    title = heading_of_plant(plant, quantity, curve)
+    title = short_heading(plant, quantity) if is_short else heading_of_plant(plant, quantity, curve)
     for line in lines:
         other_styles = _other_styles(line)
         for i, values in enumerate(curves_of(line.plan, quantity)):
@@ -172,7 +172,10 @@ def _draw(
             drawn.append(values)
             _draw_curve(ax, line, values, style, label)
     durations = _draw_arrivals(ax, lines)
-    for k, level in enumerate(limits_in_sight(lines, quantity, np.concatenate(drawn), curve)):
+    without_limit = is_short and is_distance(plant, quantity)
+    values_drawn = np.concatenate(drawn)
+    limits = [] if without_limit else limits_in_sight(lines, quantity, values_drawn, curve)
+    for k, level in enumerate(limits):
         label = "_" if k else "limit"  # once in the legend
         # a limit holds on the way, not for what comes after it
         ax.plot([0.0, max(durations)], [level, level], color=LIMIT.colour, linewidth=LIMIT.width,
@@ -246,9 +249,25 @@ def short_curves(motion: Plan | Floor, quantity: str) -> list[Array]:
     """The curves of a quantity; of a tip that moves in space one, its distance from rest."""
     lines = curves(motion, quantity)
     across = motion.task.plant.tip_lines
-    if quantity != "deflection" or across is None:
+    if across is None or not is_distance(motion.task.plant, quantity):
         return lines
     return [np.abs(across @ np.array(lines)).max(axis=0)]
+
+
+def is_distance(plant: Plant, quantity: str) -> bool:
+    """Return whether the short curve of a quantity is the distance of a tip in space.
+
+    Peaks and limits are of its displacement along each axis, which may be smaller.
+    """
+    return quantity == "deflection" and plant.tip_lines is not None
+
+
+def short_heading(plant: Plant, quantity: str) -> str:
+    """Return the heading of a quantity's short curves: tip's distance from rest [mm]."""
+    of_axes = heading_of_plant(plant, quantity)
+    if not is_distance(plant, quantity):
+        return of_axes
+    return of_axes.replace(QUANTITIES[quantity].label.of(plant.joint), "tip's distance from rest")
 
 
 def names_of_curves(plant: Plant, quantity: str) -> list[str]:

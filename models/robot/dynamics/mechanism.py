@@ -67,7 +67,7 @@ class Mechanism:
     following : mapping of int to (int, Following)
         By the number of a body whose joint follows another: the body of that one, and how.
     hint : str
-        What an error about loads asks besides, as whether lengths are in millimetres.
+        What an error about loads asks besides, such as whether lengths are in millimetres.
     """
 
     bodies: Sequence[RigidBody]
@@ -172,7 +172,7 @@ def build_mechanism(robot: RobotParts) -> Mechanism:
             tree.joints[name]: (tree.joints[entry.leader], entry)
             for name, entry in robot.followers.items()
         },
-        hint=urdf.hint_of_size,
+        hint=(robot.beam and robot.beam.hint_of_material) or urdf.hint_of_size,
     )
 
 

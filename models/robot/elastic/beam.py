@@ -36,6 +36,10 @@ MIDDLE = "middle"
 """Where hinges are: such that frequencies are exact, or in the middle of equal parts."""
 
 
+_SOFTEST = 1e8
+_STIFFEST = 1.3e12
+"""Young's moduli between which those of bars are: polyethylene has 2e8 Pa, diamond 1.2e12 Pa."""
+_LARGE_UNITS = {"GPa": 1e9, "MPa": 1e6}
 _ALONG_Z = (0.0, 0.0, 1.0)
 _NOWHERE = (0.0, 0.0, 0.0)
 _IF_STATED = {"if_stated": True}
@@ -196,6 +200,21 @@ class Beam:
         along_x = self.width * self.height**3 / 12
         along_y = self.height * self.width**3 / 12
         return (self.youngs_modulus * along_x, self.youngs_modulus * along_y)
+
+    @property
+    def hint_of_material(self) -> str:
+        """A question where no material is as soft, or as stiff, as stated; else an empty text."""
+        modulus = self.youngs_modulus
+        if modulus is None or _SOFTEST <= modulus <= _STIFFEST:
+            return ""
+        what = "softer than any bar" if modulus < _SOFTEST else "stiffer than diamond"
+        meant = [
+            f"; was {modulus:g}{unit} meant?"
+            for unit, size in _LARGE_UNITS.items()
+            if _SOFTEST <= size * modulus <= _STIFFEST
+        ]
+        question = meant[0] if meant else "; give it such as 70GPa"
+        return f"youngs_modulus of the beam is {modulus:g} Pa, {what}{question}"
 
     @property
     def line_mass(self) -> float:

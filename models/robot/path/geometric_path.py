@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from quietarm.models.number_checks import listed, positive, quoted
 from quietarm.models.robot.dynamics.kinematics import Kinematics, Pose
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.path.joint_table import read_joint_table
+from quietarm.models.robot.path.not_driven import moves_undriven
 from quietarm.models.robot.path.piecewise import NoFitError, Piecewise, fit, interpolate
 from quietarm.models.robot.path.straight_line import straight_positions
 from quietarm.models.robot.path.straight_lines import (
@@ -206,6 +207,7 @@ class GeometricPath:
         at: Sequence[float] | None = None,
         degree: int = 5,
         joints: Sequence[str] = (),
+        first: int = 1,
     ) -> GeometricPath:
         """A natural spline through waypoints, shape (waypoints, joints) [rad or m].
 
@@ -219,8 +221,11 @@ class GeometricPath:
             Where on the path they are, from 0 to 1; by default by the way between them.
         degree : int
             5, with four continuous derivatives, or 3, with two: then the jerk jumps at waypoints.
+        first : int
+            The number of the first waypoint in words, such as that in a file of more.
         """
         points = _rows(waypoints)
+        numbers = [*range(first, first + len(points))]
         if degree not in _DEGREES:
             raise ValueError(
                 f"degree of the path is {degree}; give 5 or 3: a robot can follow a path with "
@@ -228,8 +233,8 @@ class GeometricPath:
             )
         remarks = tuple[str, ...]()
         if at is None:
-            points, remarks = _without_repeated(points)
-            _check_turns(points)
+            points, remarks, numbers = _without_repeated(points, first=first)
+            _check_turns(points, numbers)
             ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
             places = np.append(0.0, np.cumsum(ways)) / ways.sum()
             places[-1] = 1.0
@@ -249,10 +254,10 @@ class GeometricPath:
         try:
             path = cls._of_spline(_natural(places, points, degree), places, tuple(joints))
         except _NotSmoothError:
-            nearest = int(np.diff(places).argmin()) + 1
+            nearest = int(np.diff(places).argmin())
             raise ValueError(
-                f"waypoints {nearest} and {nearest + 1} are too near each other for a spline: "
-                f"{np.diff(places).min():.2g} of the path; leave one of them out"
+                f"waypoints {numbers[nearest]} and {numbers[nearest + 1]} are too near each other "
+                f"for a spline: {np.diff(places).min():.2g} of the path; leave one of them out"
             ) from None
         return replace(path, remarks=remarks)
 
@@ -304,12 +309,16 @@ class GeometricPath:
         table = read_joint_table(path)
         try:
             table = table.between(waypoints)
+            first = 1 if waypoints is None else waypoints[0]
             if within is not None or len(table.positions) > MOST_WAYPOINTS:
+                tolerance = within or USUAL_TOLERANCE
                 through = cls.within(
-                    table.positions, within or USUAL_TOLERANCE, degree=degree, joints=table.joints
+                    table.positions, tolerance, degree=degree, joints=table.joints, first=first
                 )
             else:
-                through = cls.through(table.positions, degree=degree, joints=table.joints)
+                through = cls.through(
+                    table.positions, degree=degree, joints=table.joints, first=first
+                )
         except ValueError as error:
             raise ValueError(f"path {path}: {error}") from None
         return replace(through, remarks=(*table.remarks, *through.remarks))
@@ -322,6 +331,7 @@ class GeometricPath:
         *,
         degree: int = 5,
         joints: Sequence[str] = (),
+        first: int = 1,
     ) -> GeometricPath:
         """Make a path within a tolerance of the straight lines between waypoints, maybe very many.
 
@@ -335,6 +345,8 @@ class GeometricPath:
             [rad or m].
         tolerance : float
             How far each joint may be from the nearest point of the lines [rad or m].
+        first : int
+            As of `through`.
 
         Raises
         ------
@@ -344,14 +356,19 @@ class GeometricPath:
         tolerance = positive("tolerance of the path", tolerance, "rad or m")
         points = _rows(waypoints, most=MOST_POINTS)
         if len(points) <= _FEW:
-            path = cls.through(points, degree=degree, joints=joints)
+            path = cls.through(points, degree=degree, joints=joints, first=first)
             if path.off_straight.max() <= tolerance:
                 return path
-        given = len(points)
-        points, _ = _without_repeated(points, _SAME)
+        given = points
+        points = _without_repeated(points, _SAME).points
         points, remarks = without_spurs(points, tolerance)
-        path, words = cls._near(points, tolerance, degree, joints)
-        words = f"{words.format(given)}, within {tolerance:.3g} rad (or m) of the lines between all"
+        try:
+            path, words = cls._near(points, tolerance, degree, joints)
+        except _TurnsBackError as error:
+            at = int(np.abs(given - error.point).sum(axis=1).argmin())
+            raise _TurnsBackError(first + at, error.point) from None
+        near = f"within {tolerance:.3g} rad (or m) of the lines between all"
+        words = f"{words.format(len(given))}, {near}"
         lines = tuple(map(tuple, _few_lines(points, tolerance).tolist()))
         return replace(path, lines=lines, remarks=(*remarks, words))
 
@@ -363,6 +380,7 @@ class GeometricPath:
         radius: float | Sequence[float],
         *,
         joints: Sequence[str] = (),
+        first: int = 1,
     ) -> GeometricPath:
         """Make a path straight between waypoints in joint space, round where the tip is near one.
 
@@ -380,6 +398,8 @@ class GeometricPath:
             One for all waypoints but the first and the last, or one of each [m].
         joints : sequence of str, optional
             The joints of the waypoints; the robot's, in its order, by default.
+        first : int
+            As of `through`.
 
         Raises
         ------
@@ -393,8 +413,10 @@ class GeometricPath:
                 f"the waypoints are of {listed(names)}, {points.shape[1]} numbers each, and the "
                 f"robot drives {listed(robot.joints)}; give a position of each"
             )
-        points, remarks = _without_repeated(points[:, [names.index(name) for name in robot.joints]])
-        _check_turns(points)
+        moving = [f"warning: {words}" for words in moves_undriven(robot, names, points)]
+        order = [names.index(name) for name in robot.joints]
+        points, remarks, numbers = _without_repeated(points[:, order], first=first)
+        _check_turns(points, numbers)
         radii = _radii(radius, len(points) - 2)
         kinematics = robot.kinematics(robot.tip)
         halves, reached = blends_within(points, lambda q: kinematics.pose(q).origin, radii)
@@ -403,12 +425,12 @@ class GeometricPath:
         passed = tuple(
             f"waypoint {number} is passed at {1e3 * distance:.2g} mm, blended within "
             f"{1e3 * within:.3g} mm"
-            for number, (distance, within) in enumerate(
-                zip(_passed(rounded, kinematics, points, halves), reached), start=2
+            for number, distance, within in zip(
+                numbers[1:], _passed(rounded, kinematics, points, halves), reached
             )
         )
         lines = tuple(map(tuple, points.tolist()))
-        return replace(path, lines=lines, remarks=(*remarks, *passed))
+        return replace(path, lines=lines, remarks=(*moving, *remarks, *passed))
 
     @classmethod
     def _near(
@@ -430,7 +452,7 @@ class GeometricPath:
                 f"(or m) of the lines between all; a path has {MOST_WAYPOINTS // 2} at most: "
                 "give a larger tolerance, such as --path-tolerance 0.5deg, or a part of the path"
             )
-        _check_turns(corners)
+        _check_turns(corners, range(len(corners)))
         left_out = np.linalg.norm(points - nearest_on_lines(points, corners), axis=1).max()
         rounded = rounded_lines(corners, _WITHIN * tolerance - left_out)
         path = cls(*_plain(rounded), tuple(joints))
@@ -581,10 +603,18 @@ def _natural(places: Array, points: Array, degree: int) -> BSpline:
     return make_interp_spline(places, points, k=degree, bc_type=(ends, ends))
 
 
-def _without_repeated(points: Array, share: float = _NEAR) -> tuple[Array, tuple[str, ...]]:
-    """Waypoints without those that repeat the one before them, and words on which these are.
+class _Kept(NamedTuple):
+    """Waypoints that are kept, words on the others, and the numbers of those that are kept."""
 
-    Of the last two the last one is kept.
+    points: Array
+    remarks: tuple[str, ...]
+    numbers: list[int]
+
+
+def _without_repeated(points: Array, share: float = _NEAR, first: int = 1) -> _Kept:
+    """Waypoints without those that repeat the one before them, which words name.
+
+    Of the last two the last one is kept. They are numbered from the first one's number.
     """
     ways = np.linalg.norm(np.diff(points, axis=0), axis=1)
     near = max(_LEAST_WAY, share * float(ways.sum()))
@@ -596,8 +626,8 @@ def _without_repeated(points: Array, share: float = _NEAR) -> tuple[Array, tuple
             kept.append(number)
             continue
         remarks.append(
-            f"waypoints {kept[-1] + 1} and {number + 1} are {way:.2g} rad (or m) apart and taken "
-            "as one"
+            f"waypoints {kept[-1] + first} and {number + first} are {way:.2g} rad (or m) apart and "
+            "taken as one"
         )
         if number == len(points) - 1 and kept[-1] > 0:
             kept[-1] = number
@@ -606,7 +636,7 @@ def _without_repeated(points: Array, share: float = _NEAR) -> tuple[Array, tuple
             f"the path has a length of {ways.sum():.3g} and ends where it begins; give one that "
             "moves a joint"
         )
-    return points[kept], tuple(remarks)
+    return _Kept(points[kept], tuple(remarks), [number + first for number in kept])
 
 
 def _radii(radius: float | Sequence[float], corners: int) -> Array:
@@ -639,16 +669,25 @@ def _passed(path: Piecewise, kinematics: Kinematics, points: Array, halves: Arra
     return distances
 
 
-def _check_turns(points: Array) -> None:
-    """Refuse a way that turns back where it came from."""
+class _TurnsBackError(ValueError):
+    """A way turns back at a waypoint, which has a number in words."""
+
+    def __init__(self, number: int, point: Array) -> None:
+        super().__init__(
+            f"the path turns back at waypoint {number}, a corner; plan a move to it and another "
+            "from there, or round the corner by a waypoint beside it"
+        )
+        self.point = point
+
+
+def _check_turns(points: Array, numbers: Sequence[int]) -> None:
+    """Refuse a way that turns back where it came from; waypoints have numbers in words."""
     steps = np.diff(points, axis=0)
     steps = steps / np.linalg.norm(steps, axis=1)[:, None]
-    for number, cosine in enumerate((steps[1:] * steps[:-1]).sum(axis=1), start=2):
+    cosines = (steps[1:] * steps[:-1]).sum(axis=1)
+    for number, point, cosine in zip(numbers[1:], points[1:], cosines):
         if cosine < BACK:
-            raise ValueError(
-                f"the path turns back at waypoint {number}, a corner; plan a move to it and "
-                "another from there, or round the corner by a waypoint beside it"
-            )
+            raise _TurnsBackError(number, point)
 
 
 def _few_lines(points: Array, tolerance: float) -> Array:

@@ -50,6 +50,15 @@ def test_limits_that_are_switched_off_are_not_used_and_named(tmp_path):
     assert "max_acceleration" not in _notes(robot)
 
 
+def test_a_limit_in_degrees_is_named_with_the_urdfs(tmp_path):
+    """A speed of 170 deg/s is 2.967 rad/s; nothing is asked of limits near the URDF's."""
+    robot = _robot(tmp_path, "a: {max_velocity: 170}\n  b: {max_velocity: 4, max_effort: 600}")
+    words = _notes(robot)
+    assert "speed limit far above the URDF's: a 170 rad/s (URDF 3); were degrees meant?" in words
+    assert "170 deg/s are 2.967 rad/s" in words
+    assert "torque limit far above the URDF's: b 600 N m (URDF 150); is it right?" in words
+
+
 def test_narrower_positions_narrow_the_range(tmp_path):
     robot = _robot(tmp_path, "a: {has_position_limits: true, min_position: -1, max_position: 1}")
     assert robot.ranges() == [(-1.0, 1.0), (-3.0, 3.0)]

@@ -279,6 +279,8 @@ def test_joints_that_the_robot_does_not_drive_are_left_out_and_named(tmp_path):
     assert path.remarks == (
         "not used of the table: times",
         "joints that the robot does not drive are left out: grip",
+        "warning: joint 'grip' moves by 0.02 m, and the robot's file does not drive it, but holds "
+        "it at 0.02; add it to joints, beside a, b",
     )
     file.write_text("grip,a\n0,0\n0.01,0.2\n")
     with pytest.raises(ValueError, match="give positions of b as well"):
@@ -354,7 +356,7 @@ def test_a_short_way_out_and_back_is_left_out():
     assert path == qa.GeometricPath.line([0, 0], [1.0, -0.5])
     assert path.remarks[0] == "0.034 rad (or m) that it goes beyond a point and back are left out"
     there_and_back = np.append(np.linspace(0, 1, 300), np.linspace(0.99, 0.5, 100))
-    with pytest.raises(ValueError, match="turns back at waypoint 2, a corner; plan a move to it"):
+    with pytest.raises(ValueError, match="turns back at waypoint 300, a corner; plan a move to it"):
         qa.GeometricPath.within(there_and_back[:, None] * [1.0, -0.5], 1e-4)
 
 

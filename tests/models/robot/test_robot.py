@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -224,6 +225,17 @@ def test_a_spring_too_soft_to_carry_its_load_is_refused():
     level = qa.GeometricPath.line(np.zeros(6), np.full(6, 0.2))
     with pytest.raises(ValueError, match=r"spring beam . about . is too soft to carry its load"):
         soft.along(level)
+
+
+def test_a_modulus_that_no_material_has_is_named(tmp_path):
+    file = ARM_FILE.replace("70GPa", "70")
+    robot = qa.Robot.load(write_robot(tmp_path, ARM, file))
+    words = "youngs_modulus of the beam is 70 Pa, softer than any bar; was 70GPa meant?"
+    assert [note.words for note in robot.notes] == [words]
+    with pytest.raises(ValueError, match=f"too soft to carry its load .*; {re.escape(words)}$"):
+        robot.along(qa.GeometricPath.line([0.0, 0.0], [0.2, 0.2]))
+    stiff = qa.Robot.load(write_robot(tmp_path, ARM, file.replace(": 70,", ": 7e13,")))
+    assert "7e+13 Pa, stiffer than diamond; give it such as 70GPa" in stiff.notes[0].words
 
 
 @pytest.mark.parametrize(("path", "words"), [

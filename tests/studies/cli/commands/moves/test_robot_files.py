@@ -29,9 +29,14 @@ def test_limits_of_a_gripper_are_no_limits_of_the_move(folder, call):
 
 def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call):
     file = write_robot(folder, ARM, ARM_FILE, "a: {max_acceleration: 8}")
-    assert call(f"evaluate robot.yaml {MOVE} --torque-limit a=90 --output plan.json")[0] == 0
+    limits = "--torque-limit a=90 --speed-limit b=170"
+    code, out, _ = call(f"evaluate robot.yaml {MOVE} {limits} --output plan.json")
+    assert code == 0
+    far = "warning: speed limit far above the URDF's: b 170 rad/s (URDF 3); were degrees meant?"
+    assert far in _words(out)
+    assert out.count("far above") == 1
     path = qa.GeometricPath.line([0.0, 0.0], [0.4, 0.3], joints=("a", "b"))
-    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0})
+    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0}, speed_limit={"b": 170.0})
     assert qa.Plan.load("plan.json").task == task
     assert [limit.name for limit in task.limits] == ["torque", "speed", "acceleration"]
 
@@ -86,18 +91,22 @@ def test_waypoints_are_blended_and_taken_in_part(folder, call, refused):
     Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
     code, out, _ = call("list robot.yaml --path points.csv --waypoints 2:4 --blend 5mm")
     assert code == 0
-    assert re.search(r"waypoint 2 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
+    assert re.search(r"waypoint 3 is passed at [\d.]+ mm, blended within 5 mm", _words(out))
     first, *_ = lines = out.splitlines()
     assert re.match(r"arm, 2 driven joints: along the path it swings at .* Hz, and sags by", first)
     assert max(len(line.rstrip()) for line in lines) <= 100
     assert out.count("\npath") == 1
-    assert "waypoint 3" not in out
+    assert "waypoint 2" not in out  # they are numbered as in the file
     for words, remedy in (
         ("--waypoints 2-4", "--waypoints is '2-4'; give two numbers, such as 2:4"),
         ("--waypoints 3:9", "path points.csv: waypoints 3:9 are none of 4; give the numbers of"),
         ("--blend 5mm --path-tolerance 1deg", "--path-tolerance is for a spline, and --blend"),
     ):
         assert remedy in refused(f"list robot.yaml --path points.csv {words}")
+    Path("back.csv").write_text("a,b\n0,0\n0.2,0.1\n0.5,0.3\n0.2,0.1\n0.6,0.8\n")
+    for words in ("", " --path-tolerance 0.001", " --blend 5mm"):
+        error = refused(f"list robot.yaml --path back.csv --waypoints 2:5{words}")
+        assert "the path turns back at waypoint 3, a corner" in error
 
 
 @pytest.mark.slow
@@ -148,13 +157,31 @@ LAW = partial(trapezoid, 0.25, duration=0.6)
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("option", "offers"), [
+    ("", ["feasible with all else unchanged: residual limit 0.00", "acceleration limit 1",
+          "rad/s^2 at a"]),
+    (" --error payload=10% --residual-limit 0.01mm", ["may be feasible", "residual limit 0.00"]),
+])  # fmt: skip
+def test_what_would_do_may_be_a_limit_that_is_of_no_joint(folder, refused, option, offers):
+    """No rigid joint is too slow here; the residual, of no joint, is beside a joint's limit."""
+    write_robot(folder, ARM, f"{ARM_FILE}limits: urdf\n")
+    line = "plan robot.yaml --start=0,0 --target=0.5,0.4 --duration 0.6 --terms 4"
+    error = refused(f"{line} --acceleration-limit 8{option}", status=1)
+    assert "found no motion of 4 terms with" in error
+    for words in offers:
+        assert words in error
+
+
+@pytest.mark.slow
 def test_a_trajectory_is_judged_as_it_is_timed(folder, call):
     """Its figures, the limits that it passes, and what makes it ring."""
     write_robot(folder, ARM, ARM_FILE, "a: {has_jerk_limits: true, max_jerk: 900}")
-    Path("moveit.yaml").write_text(trajectory_text(("a", "b"), [0, 0.1], [1.0, 0.6], 0.6, LAW))
+    text = trajectory_text(("a", "b", "grip"), [0, 0.1, 0.01], [1, 0.6, 0.03], 0.6, LAW)
+    Path("moveit.yaml").write_text(text)
     code, out, _ = call("evaluate robot.yaml --path moveit.yaml --as-timed")
     words = _words(out)
     assert code == 0
+    assert "warning: joint 'grip' moves by 0.02 m, and the robot's file does not drive it" in words
     assert "arm, as it is timed in 0.6 s" in words
     assert "(beyond the limit of a 900)" in words
     assert "step the acceleration of a jumps by" in words

@@ -36,7 +36,7 @@ def _files(folder):
 
 @pytest.mark.slow
 def test_a_plan_of_a_robot_and_its_files(call):
-    outputs = "--output move.json --output move.yaml --output move.csv"
+    outputs = "--output move.json --output move.yaml --output move.csv --output move.html"
     code, out, _ = call(f"plan ur5_bar.yaml {ENDS} --duration 1 {outputs}")
     assert code == 0
     assert "ur5 (6 joints; beam at tool0), along its path in 1 s" in out
@@ -57,6 +57,9 @@ def test_a_plan_of_a_robot_and_its_files(call):
     assert header[1] == "shoulder_pan_joint_angle_rad"
     assert "wrist_3_joint_torque_Nm" in header
     assert float(rows[-1][1]) == pytest.approx(path(1.0)[0])
+    page = Path("move.html").read_text()
+    assert "distance from rest" in page  # which is not the peak deflection, along one axis
+    assert '"Tip displacement"' not in page
 
 
 @pytest.mark.slow
