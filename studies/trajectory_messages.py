@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from quietarm.models import GeometricPath, Robot, TimedMotion
 from quietarm.models.number_checks import finite, listed, not_negative, positive, quoted, whole
 from quietarm.models.robot.path.joint_table import JointTable, table_of_message
+from quietarm.models.robot.path.timed_motion import check_rates
 from quietarm.models.robot.urdf.following import Following
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -136,6 +137,8 @@ class MessagePlanner:
         if not table.joints:
             raise ValueError("the message has no joint_names; give those of its positions")
         _check_rest(table)
+        if self.judge and _own_duration(table) is not None:
+            check_rates(table)
         _check_no_base(message)
         others = _others(self.robot, table)
         start = _start_state(message)
