@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import listed, positive, quoted
+from quietarm.models.number_checks import how_named, listed, positive, quoted
 from quietarm.models.robot.dynamics.kinematics import Kinematics, Pose
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.path.joint_table import read_joint_table
@@ -389,9 +389,11 @@ class GeometricPath:
         names = tuple(joints) or robot.joints
         points = _rows(waypoints)
         if points.shape[1] != len(names) or not {*robot.joints} <= {*names}:
+            missing = [name for name in robot.joints if name not in names]
+            hints = how_named([name for name in names if name not in robot.joints], missing)
             raise ValueError(
                 f"the waypoints are of {listed(names)}, {points.shape[1]} numbers each, and the "
-                f"robot drives {listed(robot.joints)}; give a position of each"
+                f"robot drives {listed(robot.joints)}; give a position of each{hints}"
             )
         points, remarks = _without_repeated(points[:, [names.index(name) for name in robot.joints]])
         _check_turns(points)

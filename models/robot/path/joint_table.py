@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import Array
 from quietarm.models.number_checks import quoted
+from quietarm.models.robot.path.table_headings import Headings, cell_value, read_headings
 from quietarm.models.robot.text_files import read_text, read_yaml
 
 _MESSAGES = (".yaml", ".yml", ".json", ".moveit")
@@ -279,37 +280,56 @@ def _table_of(path: str | Path) -> JointTable:
         if mark is None
         else list(csv.reader(io.StringIO("\n".join(lines)), delimiter=mark))
     )
-    names = tuple[str, ...]()
     if mark != ",":
         rows = _with_points(rows, str(path))
+    headings = None
     try:
-        [float(cell) for cell in rows[0]]
+        [cell_value(cell) for cell in rows[0]]
     except ValueError:
-        names = tuple(cell.strip() for cell in rows[0])
+        headings = read_headings(rows[0])
+        names = rows[0]
         rows = rows[1:]
+    else:
+        names = []
     if len({len(row) for row in rows}) != 1:
         raise ValueError(
             f"path {path} has rows of different lengths, or none; give a number for each joint in "
             "each, and semicolons between numbers with decimal commas"
         )
+    if headings is not None and len(names) != len(rows[0]):
+        raise ValueError(
+            f"path {path} names {len(names)} columns and has {len(rows[0])} numbers in a row; "
+            "give a number for each name, and semicolons between numbers with decimal commas"
+        )
+    headings = headings or Headings(dict.fromkeys(range(len(rows[0])), ""), {}, [], [])
+    columns = [*headings.times, *headings.joints]
     try:
-        table = np.array([[float(cell) for cell in row] for row in rows])
+        table = {
+            column: _in_si([row[column] for row in rows], headings, column) for column in columns
+        }
     except ValueError as error:
         raise ValueError(
             f"path {path} has a row that is no row of numbers ({error}); give a number for each "
             "joint"
         ) from None
-    if names and len(names) != table.shape[1]:
-        raise ValueError(
-            f"path {path} names {len(names)} columns and has {table.shape[1]} numbers in a row; "
-            "give a number for each name, and semicolons between numbers with decimal commas"
-        )
-    times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
-    at = [number for number, is_time in enumerate(times) if is_time]
-    kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)
+    unused = ["times"] if headings.times else []
+    if headings.others:
+        first, *others = headings.others
+        more = f" and {len(others)} more" if others else ""
+        unused.append(f"columns that are no positions, {first}{more}")
     return JointTable(
-        tuple(name for name, is_time in zip(names, times) if not is_time),
-        table[:, kept],
-        times=table[:, at[0]] if len(at) == 1 else None,
-        remarks=("not used of the table: times",) if at else (),
+        headings.names,
+        np.column_stack([table[column] for column in headings.joints]),
+        times=table[headings.times[0]] if len(headings.times) == 1 else None,
+        remarks=(
+            *headings.unit_words,
+            *([f"not used of the table: {' and '.join(unused)}"] if unused else []),
+        ),
     )
+
+
+def _in_si(cells: list[str], headings: Headings, column: int) -> Array:
+    """A column's numbers in SI units, by the unit of the cell or of the heading."""
+    read = [cell_value(cell) for cell in cells]
+    per_unit = headings.per_unit(column)
+    return np.array([value if own else value / per_unit for value, own in read])

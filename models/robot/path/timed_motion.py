@@ -11,7 +11,7 @@ import numpy as np
 
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import listed, quoted
+from quietarm.models.number_checks import how_named, listed, quoted
 from quietarm.models.robot.path.joint_table import JointTable, read_joint_table
 
 
@@ -105,9 +105,11 @@ class TimedMotion:
                 )
             return TimedMotion(names, self.times, self.coefficients, self.points, self.remarks)
         if missing := [name for name in names if name not in self.joints]:
+            others = [name for name in self.joints if name not in names]
             raise ValueError(
                 f"the trajectory is of the joints {listed(self.joints)}, without "
                 f"{listed(missing)}, which the robot drives; give a trajectory of these as well"
+                f"{how_named(others, missing)}"
             )
         for name in self.joints:
             if self.joints.count(name) > 1:

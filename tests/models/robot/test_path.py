@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
+from quietarm.models.robot.path.joint_table import read_joint_table
 from quietarm.ocp.saved import plain, typed
 
 PLACES = np.linspace(0.0, 1.0, 401)
@@ -110,6 +111,35 @@ def test_a_csv_without_names_is_in_the_order_of_the_robots_joints(tmp_path, mark
     if mark != ",":  # as spreadsheets of many countries write it
         file.write_text(text.replace(".", ","), encoding="utf-8-sig")
         assert qa.GeometricPath.load(file)(1.0) == pytest.approx([0.9, 0.2])
+
+
+@pytest.mark.parametrize(("heading", "row"), [
+    ("a_deg;b_mm", "90;5,5"),
+    ("a [deg];b (mm)", "90;5,5"),
+    ("time_ms;a_angle_deg;b_position_mm;a_speed_rad_s;tip_x_mm", "8;90;5.5;3;4"),  # of export
+    ("time_s,a_angle_rev,b_position_m", "0.008,0.25,0.0055"),
+    ("a;b", "90deg;5.5mm"),
+    ("", "90deg;5.5mm"),
+])  # fmt: skip
+def test_a_csv_says_its_units_in_headings_or_cells(tmp_path, heading, row):
+    file = tmp_path / "waypoints.csv"
+    zeros = ";".join("0" for _ in row.split(";")) if ";" in row else "0,0,0"
+    file.write_text("\n".join(filter(None, [heading, zeros, row])))
+    table = read_joint_table(file)
+    assert table.joints == (("a", "b") if heading else ())
+    assert table.positions[1] == pytest.approx([np.pi / 2, 0.0055])
+    if table.times is not None:
+        assert table.times[1] == pytest.approx(0.008)
+    told = " ".join(table.remarks)
+    assert ("a_speed_rad_s and 1 more" in told) == ("speed" in heading)
+    assert ("read of a in" in told) == (heading not in ("", "a;b"))
+
+
+def test_a_name_may_end_like_a_unit(tmp_path):
+    file = tmp_path / "waypoints.csv"
+    file.write_text("left_m,b\n0,0\n1,2\n")
+    table = read_joint_table(file)
+    assert (table.joints, table.positions[1].tolist()) == (("left_m", "b"), [1.0, 2.0])
 
 
 @pytest.mark.parametrize("wrapped", [False, True])
