@@ -404,9 +404,9 @@ class GeometricPath:
         path = cls(*_plain(rounded), robot.joints)
         passed = tuple(
             f"waypoint {number} is passed at {1e3 * distance:.2g} mm, blended within "
-            f"{1e3 * within:.3g} mm"
-            for number, (distance, within) in enumerate(
-                zip(_passed(rounded, kinematics, points, halves), reached), start=2
+            f"{1e3 * within:.3g} mm{_half_of_line(within, radius_there)}"
+            for number, (distance, within, radius_there) in enumerate(
+                zip(_passed(rounded, kinematics, points, halves), reached, radii), start=2
             )
         )
         lines = tuple(map(tuple, points.tolist()))
@@ -625,6 +625,13 @@ def _radii(radius: float | Sequence[float], corners: int) -> Array:
             "last; give one for all, or one of each"
         )
     return np.array([positive("radius of a blend", value, "m") for value in several])
+
+
+def _half_of_line(within: float, radius: float) -> str:
+    """Say that a corner is less round than its radius, as a line's half is nearer."""
+    if within > 0.999 * radius:
+        return ""
+    return f" in place of {1e3 * radius:.3g} mm, as half of a line is nearer"
 
 
 def _passed(path: Piecewise, kinematics: Kinematics, points: Array, halves: Array) -> list[float]:

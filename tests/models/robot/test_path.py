@@ -169,7 +169,11 @@ def test_a_joint_trajectory_gives_its_positions_and_no_times(tmp_path, wrapped):
     ("a.csv", "1,5;2\n3.5;2\n", "commas and with decimal points, such as '1,5' and '3.5'"),
     ("a.csv", "1,2\n1,2\n", "a.csv: the path has a length of 0"),
     ("a.yaml", "points: 3\n", "is no JointTrajectory"),
-    ("a.yaml", "joint_names: [a]\npoints: [{x: 1}]\n", "a point without positions"),
+    ("a.yaml", "joint_names: [a]\npoints: [{x: 1}]\n", "has no positions at point 1 of 1; write"),
+    ("a.yaml", "joint_names: [a]\npoints: []\n", "a.yaml has no points; give two or more"),
+    ("a.yaml", "joint_names: [a, b]\npoints: [{positions: [1, 2]}, {positions: [1]}]\n",
+     "has 1 of 2 positions at point 2 of 2"),
+    ("a.yaml", "joint_names: [a]\npoints: [{positions: [x]}]\n", "has position 'x' at point 1"),
     ("a.yaml", "a: [\n", "is no valid YAML"),
 ])  # fmt: skip
 def test_a_file_that_holds_no_path_is_refused(tmp_path, name, text, words):
@@ -287,7 +291,8 @@ def test_a_trajectory_is_found_within_other_messages(tmp_path, text):
 
 @pytest.mark.parametrize(("text", "words"), [
     (f"{TRAJECTORY}---\n{TRAJECTORY}---\n", "has 2 documents; give one"),
-    (_within("first", TRAJECTORY) + _within("second", TRAJECTORY), "has 2 trajectories; give a"),
+    (_within("first", TRAJECTORY) + _within("second", TRAJECTORY),
+     "has 2 trajectories: number 1 with 3 points of a, b and number 2 with 3 points of a, b; give"),
     (EMPTY, "is no JointTrajectory"),
     (TRAJECTORY.replace("[a, b]", "[a, a]"), "the path has joint 'a' twice"),
     ("joint_names: [a]\npoints:\n- {transforms: [{x: 1}]}\n", "is no JointTrajectory"),

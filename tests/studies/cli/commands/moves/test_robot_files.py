@@ -60,7 +60,7 @@ def test_the_path_says_how_far_its_spline_swings_out(folder, call):
     write_robot(folder, ARM, ARM_FILE)
     Path("way.csv").write_text("time,a,b,grip\n0,0,0,0\n1,0.5,0,0\n2,0.5,0.5,0\n3,0,0.5,0\n")
     # of joint a by hand: the natural quintic passes the middle of the square's side at 0.5625
-    swing = "up to 0.11 rad from the straight lines between waypoints, at joint b (a 0.063 rad)"
+    swing = "up to 0.11 rad from the straight lines between waypoints, at b (a 0.063 rad)"
     for line in ("list robot.yaml", "evaluate robot.yaml --duration 2 --coefficients=0"):
         code, out, _ = call(f"{line} --path way.csv")
         words = _words(out)
