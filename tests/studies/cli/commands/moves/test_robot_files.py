@@ -1,6 +1,7 @@
 """Files of robots, limits and paths on the command line: what is used, named and refused."""
 
 import re
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -27,13 +28,20 @@ def test_limits_of_a_gripper_are_no_limits_of_the_move(folder, call):
     assert "grip" not in out
 
 
-def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call):
+def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call, refused):
     file = write_robot(folder, ARM, ARM_FILE, "a: {max_acceleration: 8}")
-    assert call(f"evaluate robot.yaml {MOVE} --torque-limit a=90 --output plan.json")[0] == 0
+    move = f"evaluate robot.yaml {MOVE} --torque-limit a=90"
+    removed = "--acceleration-limit none --speed-limit b=none"
+    assert call(f"{move} {removed} --output plan.json")[0] == 0
     path = qa.GeometricPath.line([0.0, 0.0], [0.4, 0.3], joints=("a", "b"))
-    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0})
+    robot = qa.Robot.load(file)
+    task = robot.task(path, 1.0, torque_limit={"a": 90.0}, acceleration_limit=None)
+    assert [limit.name for limit in task.limits] == ["torque", "speed"]
+    task = replace(task, bounds={**task.bounds, "speed": {"a": task.bounds["speed"]["a"]}})
     assert qa.Plan.load("plan.json").task == task
-    assert [limit.name for limit in task.limits] == ["torque", "speed", "acceleration"]
+    all_kept = robot.task(path, 1.0, torque_limit={"a": 90.0})
+    assert [limit.name for limit in all_kept.limits] == ["torque", "speed", "acceleration"]
+    assert "robot has no joint 'c'" in refused(f"{move} --speed-limit c=none")
 
 
 def test_what_a_file_of_limits_leaves_out_stands_beside_the_figures(folder, call):
@@ -106,6 +114,7 @@ def test_radii_that_do_not_fit_the_waypoints_are_refused(folder, refused):
     Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
     for words, remedy in (
         ("--blend 2deg", "'2deg' is not a radius of --blend"),
+        ("--blend 50", "m apart; were millimetres meant? give 50mm"),
         ("--blend 1mm,2mm,3mm", "path points.csv: there are 3 radii and 2 waypoints between"),
         ("--waypoints 3:4 --blend 5mm", "a blend is at a waypoint between two others"),
     ):
