@@ -211,6 +211,19 @@ def nearest(name: str, known: Collection[str]) -> str:
     return f"; did you mean {quoted(near)}?" if near else ""
 
 
+def how_named(names: Collection[str], known: Collection[str]) -> str:
+    """How names differ from known ones: all by what stands before or behind, or each by letters."""
+    for place, rest in (("before", str.removesuffix), ("behind", str.removeprefix)):
+        added = [{rest(name, other) for name in names} - {*names} for other in known]
+        common = set[str].intersection(*added) - {""} if len(added) > 1 else set[str]()
+        if common:
+            more = quoted(min(common, key=len))
+            return f"; these have {more} {place} their names in it, leave that out"
+    alike = [nearest(name, known) for name in names]
+    few = 2  # of more a list of questions is longer than the names
+    return "".join(alike) if len([words for words in alike if words]) <= few else ""
+
+
 def nearest_name(name: str, known: Collection[str]) -> str:
     """The known name that is most like another; an empty one where none is."""
     same = [other for other in known if spelling(other) == spelling(name)]

@@ -13,7 +13,10 @@ _PI = re.compile(rf"([+-]?)(?:({_NUMBER})\s*\*?\s*)?pi(?:\s*/\s*({_NUMBER}))?\s*
 _WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([a-zA-Zµ%°/][a-zA-Zµ%°/^0-9]*|)")
 _COMMA = re.compile(r"[+-]?\d+,\d+[^\d,]*")
 _LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "µm": 1e6, "nm": 1e9}
-_ANGLES = {"rad": 1.0, **dict.fromkeys(("deg", "°", "degrees"), 180 / math.pi)}
+_ANGLES = {
+    "rad": 1.0, **dict.fromkeys(("deg", "°", "degrees"), 180 / math.pi),
+    "mrad": 1e3, "rev": 0.5 / math.pi,
+}  # fmt: skip
 _SPEEDS = {
     **_ANGLES, "rad/s": 1.0, "deg/s": 180 / math.pi, "rpm": 30 / math.pi,
     "Hz": 0.5 / math.pi, "hz": 0.5 / math.pi, "kHz": 5e-4 / math.pi,

@@ -206,7 +206,10 @@ class PointToPoint:
                 raise ValueError(has_no(plant.name, "limit of", name, QUANTITIES))
             if bounds:
                 own[QUANTITIES[name].limit] = bounds
-        limits = {name: _joined(own.get(name), given) for name, given in others.items()}
+        limits = {
+            name: _joined(plant, own.get(name), given) if name.endswith(_LIMIT) else given
+            for name, given in others.items()
+        }
         return cls(plant, target, duration, **{**own, **limits})
 
     def __init__(
@@ -613,11 +616,16 @@ def _is_default(window: object) -> bool:
     return window is None or isinstance(window, DefaultWindow)
 
 
-def _joined(own: Any, given: Any) -> Any:
+def _joined(plant: Plant, own: Any, given: Any) -> Any:
     """Return what was given, with a plant's own limits of joints that were not named."""
-    if not (isinstance(own, Mapping) and isinstance(given, Mapping)):
+    if not isinstance(given, Mapping) or not given:
         return given
-    joined = {**own, **given}
+    if own is not None and not isinstance(own, Mapping):
+        return given
+    for joint, bounds in given.items():
+        if bounds is None and joint not in plant.joint_names:
+            raise ValueError(has_no(plant.name, "joint", joint, plant.joint_names))
+    joined = {**(own or {}), **given}
     return {joint: bounds for joint, bounds in joined.items() if bounds is not None} or None
 
 

@@ -14,9 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models import GeometricPath, Robot, TimedMotion
-from quietarm.models.number_checks import finite, listed, not_negative, positive, quoted, whole
+from quietarm.models.number_checks import (
+    finite,
+    how_named,
+    listed,
+    not_negative,
+    positive,
+    quoted,
+    whole,
+)
 from quietarm.models.robot.path.joint_table import JointTable, table_of_message
 from quietarm.models.robot.path.not_driven import moves_undriven
+from quietarm.models.robot.path.timed_motion import check_rates
 from quietarm.models.robot.urdf.following import Following
 from quietarm.ocp import (
     CycloidPolynomial,
@@ -137,6 +146,8 @@ class MessagePlanner:
         if not table.joints:
             raise ValueError("the message has no joint_names; give those of its positions")
         _check_rest(table)
+        if self.judge and _own_duration(table) is not None:
+            check_rates(table)
         _check_no_base(message)
         others = _others(self.robot, table)
         start = _start_state(message)
@@ -270,9 +281,11 @@ def _check_no_base(message: object) -> None:
 def _others(robot: Robot, table: JointTable) -> dict[str, float | Following]:
     """The message's joints that the robot does not drive: where they stand, or whom they follow."""
     if missing := [name for name in robot.joints if name not in table.joints]:
+        strangers = [name for name in table.joints if name not in robot.joints]
         raise ValueError(
             f"the message is of the joints {listed(table.joints)}, without {listed(missing)}, "
             "which the robot's file drives; plan for a group of these as well"
+            f"{how_named(strangers, missing)}"
         )
     if moving := moves_undriven(robot, table.joints, table.positions):
         raise ValueError(moving[0])

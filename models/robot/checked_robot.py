@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from quietarm.models.number_checks import (
 from quietarm.models.robot.dynamics.equations_of_motion import Dynamics
 from quietarm.models.robot.dynamics.mechanism import BEAM_END, GROUND
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
+from quietarm.models.robot.elastic.beam import Beam
 from quietarm.models.robot.elastic.flexibility import Base, Measured, Spring
 from quietarm.models.robot.on_path.path_tables import (
     EXCITED,
@@ -49,12 +51,34 @@ _USUAL_MODES = 2
 """That are followed where the file does not say how many."""
 
 
+_LIMITS_WANTED = "limits by quantity and joint, such as {'speed': {'elbow_joint': 3.0}}"
+_BY_JOINT = "by joint, such as {'elbow_joint': 0.5}"
+_KINDS: Mapping[str, tuple[type[Any], str]] = {
+    "joints": (Sequence, "a list of names, such as ['shoulder_joint', 'elbow_joint']"),
+    "held": (Mapping, f"positions {_BY_JOINT}"),
+    "beam": (Beam, "qa.models.Beam(at='tool0', length=0.8, ...)"),
+    "elastic_joints": (Mapping, "springs by joint, such as {'elbow_joint': Spring(8000.0)}"),
+    "springs": (Mapping, "springs by joint, such as {'finger_joint': Spring(80.0)}"),
+    "base": (Base, "qa.models.Base(stiffness=(2e5, 2e5))"),
+    "tip": (str, "the name of a link, such as 'tool0'"),
+    "rotor_inertia": (Mapping, f"inertias {_BY_JOINT}"),
+    "friction": (Mapping, f"friction {_BY_JOINT}"),
+    "coulomb": (Mapping, f"friction {_BY_JOINT}"),
+    "limits": (Mapping, _LIMITS_WANTED),
+    "positions": (Mapping, "ranges by joint, such as {'elbow_joint': (-1.0, 1.0)}"),
+    "remarks": (Sequence, "a list of notes"),
+}
+"""By an argument: its type, and what is given of it."""
+_MAY_BE_NONE = ("beam", "base", "tip")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CheckedRobot(MovingRobot):
     """A robot whose parts fit its URDF: names, values and ranges; defaults are filled in."""
 
     @interruptible
     def __post_init__(self) -> None:
+        self._check_kinds()
         text = _text_of(self.urdf)
         self._set("urdf", dynamics_of(text))
         self._set("remarks", (*notes_of_text(text), *self.remarks))
@@ -70,6 +94,7 @@ class CheckedRobot(MovingRobot):
         self._set("coulomb", self._rubbing("coulomb", "friction"))
         self._set("gravity", _vector("gravity", self.gravity))
         self._set("positions", self._ranges_given())
+        self._check_limits()
         if self.modes is not None and self.modes != EXCITED:
             self._set("modes", _number_of_modes(self.modes))
             if self.beam is not None:
@@ -80,6 +105,35 @@ class CheckedRobot(MovingRobot):
         self._check_inertias()
         _ = self.dynamics
         self._check_modes()
+
+    def _check_kinds(self) -> None:
+        """Refuse arguments of a wrong type before their parts are looked at."""
+        for name, (kind, wanted) in _KINDS.items():
+            value = getattr(self, name)
+            if value is None and name in _MAY_BE_NONE:
+                continue
+            if not isinstance(value, kind) or (kind is Sequence and isinstance(value, str)):
+                raise TypeError(f"{name} is {quoted(value)}; give {wanted}")
+        for name in self.joints:
+            if not isinstance(name, str):
+                raise TypeError(f"joints has {quoted(name)}; give {_KINDS['joints'][1]}")
+
+    def _check_limits(self) -> None:
+        """Refuse limits that are not by quantity, and then by driven joint."""
+        for quantity, limits in self.limits.items():
+            if quantity in self.description.joints:
+                raise ValueError(
+                    f"limits has joint {quoted(quantity)} where a quantity belongs; give them as "
+                    f"{{'speed': {{{quoted(quantity)}: 3.0}}}}"
+                )
+            if not isinstance(limits, Mapping):  # one for all, such as of the tip's displacement
+                _check_sides(f"limit of {quantity}", limits)
+                continue
+            for name, size in limits.items():
+                if name not in self.joints:
+                    entry = f"driven joint, for limits of {quantity},"
+                    raise ValueError(has_no("the robot", entry, name, self.joints))
+                _check_sides(f"limit of {quantity} of {name}", size)
 
     def _check_modes(self) -> None:
         """Check that modes are no more than the springs; by default they are two, or one."""
@@ -136,8 +190,8 @@ class CheckedRobot(MovingRobot):
         found = dict[str, Spring]()
         for name, spring in springs.items():
             self._check_joint(entry, name)
-            values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring))
             what = f"of {name} in {entry}"
+            values = spring if isinstance(spring, Spring) else Spring(*_two_of(spring, what))
             stiffness, damping = (
                 unit.of(self.kind_of(name)) for unit in (dimensions.STIFFNESS, dimensions.DAMPING)
             )
@@ -192,7 +246,7 @@ class CheckedRobot(MovingRobot):
     def _check_joint(self, entry: str, name: str) -> None:
         if name not in self.description.moving:
             raise ValueError(
-                has_no("the URDF", f"moving joint, for {entry},", name, self.description.moving)
+                has_no("the robot", f"moving joint, for {entry},", name, self.description.moving)
             )
 
     def _driven(self) -> tuple[str, ...]:
@@ -244,7 +298,7 @@ class CheckedRobot(MovingRobot):
                 raise ValueError(has_no("the robot", f"driven joint, for {entry},", name, driven))
         if self.beam is not None and self.beam.at not in self.description.links:
             raise ValueError(
-                has_no("the URDF", "link, for the beam,", self.beam.at, self.description.links)
+                has_no("the robot", "link, for the beam,", self.beam.at, self.description.links)
             )
 
     def _tip(self) -> str:
@@ -252,7 +306,7 @@ class CheckedRobot(MovingRobot):
         if self.tip is None:
             return BEAM_END if self.beam is not None else list(links)[-1]
         if self.tip != BEAM_END and self.tip not in links:
-            raise ValueError(has_no("the URDF", "link, for the tip,", self.tip, links))
+            raise ValueError(has_no("the robot", "link, for the tip,", self.tip, links))
         if self.tip == BEAM_END and self.beam is None:
             raise ValueError(f"tip is {BEAM_END!r}, and there is no beam; name a link")
         return self.tip
@@ -295,6 +349,8 @@ class CheckedRobot(MovingRobot):
         if not isinstance(one, Measured):
             raise TypeError(f"{what} is {quoted(one)}; give Measured(frequency, at)")
         frequency = positive(f"{what} frequency", one.frequency, "rad/s")
+        if isinstance(one.at, str) or not isinstance(one.at, Iterable):
+            raise TypeError(f"at of {what} is {quoted(one.at)}; give a position of each joint")
         at = tuple(finite(f"a position of {what}", x, "rad") for x in one.at)
         if len(at) != len(self.joints):
             raise ValueError(
@@ -368,6 +424,13 @@ def _text_of(urdf: object) -> str:
     return text
 
 
+def _check_sides(what: str, size: Any) -> None:
+    """Refuse what is no number, or a pair of them; a task checks their signs."""
+    several = isinstance(size, Iterable) and not isinstance(size, str)
+    for side in size if several else (size,):
+        finite(what, side)
+
+
 def _number_of_modes(modes: object) -> int:
     if isinstance(modes, str):
         raise ValueError(
@@ -378,6 +441,8 @@ def _number_of_modes(modes: object) -> int:
 
 
 def _vector(name: str, value: Any) -> tuple[float, float, float]:
+    if not isinstance(value, Iterable) or isinstance(value, str):
+        raise TypeError(f"{name} is {quoted(value)}; give three numbers, such as 0, 0, -9.81")
     entries = [finite(name, entry, "m/s^2") for entry in value]
     if len(entries) != 3:
         raise ValueError(f"{name} has {len(entries)} numbers; give three, such as 0, 0, -9.81")
@@ -386,7 +451,9 @@ def _vector(name: str, value: Any) -> tuple[float, float, float]:
 
 def _about_axes(name: str, value: Any, count: int) -> tuple[Any, ...]:
     """Return two numbers about x and y, or three; one number counts for as many axes as asked."""
-    entries = (value,) * count if isinstance(value, int | float) else tuple(value)
+    if isinstance(value, str) or not isinstance(value, Iterable | Real):
+        raise TypeError(f"{name} of the base is {quoted(value)}; give one number, or two")
+    entries = (value,) * count if isinstance(value, Real) else tuple(value)
     if len(entries) not in (2, 3):
         raise ValueError(
             f"{name} of the base has {len(entries)} numbers; give one, or two, about x and about "
@@ -395,7 +462,7 @@ def _about_axes(name: str, value: Any, count: int) -> tuple[Any, ...]:
     return entries
 
 
-def _two_of(spring: Any) -> tuple[Any, ...]:
+def _two_of(spring: Any, what: str) -> tuple[Any, ...]:
     """Stiffness and damping of a number, a pair or a mapping."""
     if isinstance(spring, Mapping):
         names = [entry.name for entry in fields(Spring)]
@@ -403,4 +470,11 @@ def _two_of(spring: Any) -> tuple[Any, ...]:
             if name not in names:
                 raise ValueError(has_no("a spring", "entry", name, names))
         return tuple(spring.get(name, 0.0) for name in names)
-    return (spring,) if isinstance(spring, int | float) else tuple(spring)
+    if isinstance(spring, Real):
+        return (spring,)
+    if isinstance(spring, str) or not isinstance(spring, Sequence) or len(spring) not in (1, 2):
+        raise TypeError(
+            f"spring {what} is {quoted(spring)}; give qa.models.Spring(stiffness, damping), or the "
+            "stiffness alone"
+        )
+    return tuple(spring)

@@ -26,8 +26,8 @@ from quietarm.models.joint_motion import (
 )
 from quietarm.models.notes import Note
 from quietarm.models.number_checks import (
+    how_named,
     listed,
-    nearest,
     quoted,
 )
 from quietarm.models.plant import Plant, content, parameter
@@ -232,7 +232,7 @@ class Robot(CheckedRobot):
         if path.joints and not set(names) <= set(path.joints):
             missing = [name for name in names if name not in path.joints]
             others = [name for name in path.joints if name not in names]
-            hints = "".join(nearest(name, missing) for name in others)
+            hints = how_named(others, missing)
             raise ValueError(
                 f"the path is of the joints {listed(path.joints)}, and the robot drives "
                 f"{listed(names)}; give positions of {listed(missing)} as well{hints}"

@@ -153,7 +153,8 @@ def counting(total: int, what: str) -> AbstractContextManager[Callable[[int, int
 
 def limit_option(quantity: Quantity) -> click.Option:
     """The option of a quantity's limit."""
-    words = f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST."
+    words = f"Largest {quantity.label} during the move; by direction as LEAST:LARGEST; "
+    words += "`none` for no limit in place of the plant's own."
     return option(quantity.option, metavar=f"[{quantity.unit}]", help=words)
 
 

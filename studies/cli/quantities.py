@@ -165,7 +165,9 @@ def parse_of_plant(
         pairs = (parse_pair(part, "a limit", "elbow_joint=16") for part in text.split(","))
         by_joint = once(pairs, "the limit of ")
         return {
-            of: parse_of_plant(name, value, (kinds or {}).get(of, joint), tip_unit)
+            of: None
+            if is_none(value)
+            else parse_of_plant(name, value, (kinds or {}).get(of, joint), tip_unit)
             for of, value in by_joint.items()
         }
     limited = quantities[name.removesuffix("_limit")]
@@ -183,6 +185,11 @@ def parse_of_plant(
     if len({is_number(side) for side in sides}) > 1:
         raise ValueError(f"{text!r} has a unit on one side alone; give it on both, or on none")
     return tuple(values) if len(values) == 2 else values[0]
+
+
+def is_none(text: str | None) -> bool:
+    """Return whether a limit is typed as none, which takes a plant's own away."""
+    return text is not None and text.strip().lower() == "none"
 
 
 def parse_values(text: str, parse: Callable[[str], float]) -> tuple[float, ...]:

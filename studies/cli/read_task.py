@@ -30,6 +30,7 @@ from quietarm.studies.cli.plants import (
 )
 from quietarm.studies.cli.quantities import (
     BAND,
+    is_none,
     once,
     parse_of_plant,
     parse_parameters,
@@ -106,10 +107,12 @@ def _make_task(given: Given, kind: Kind, asked: Asked) -> PointToPoint:
         uncertainty, why = uncertainty_of_band(kind, changed)
         given.remarks.append(f"the band is for {why}")
     names = [*(quantity.limit for quantity in QUANTITIES.values()), TORQUE_SPEED]
-    typed = {name: given.read_of_plant(name, plant) for name in names}
+    removed = [name for name in names if is_none(given.pick(name)[name])]
+    typed = {name: given.read_of_plant(name, plant) for name in names if name not in removed}
     task = plant.task(
         **asked.move(),
         **{name: limit for name, limit in typed.items() if limit is not None},
+        **dict.fromkeys(removed),
         **given.pick(*_OTHERS),
         uncertainty=uncertainty,
         band=band,

@@ -6,6 +6,8 @@ from dataclasses import replace
 from math import tau
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from quietarm.models import GeometricPath, Robot, RobotOnPath
 from quietarm.models.joint_motion import LINEAR, MIXED, kind_of_joints
 from quietarm.models.robot.path.joint_table import read_joint_table
@@ -87,7 +89,24 @@ def _blended(given: Given, robot: Robot) -> GeometricPath:
         )
     except ValueError as error:
         raise ValueError(f"path {given.path}: {error}") from None
+    _check_radii(words, radii, robot, path)
     return replace(path, remarks=(*table.remarks, *path.remarks))
+
+
+def _check_radii(words: list[str], radii: list[float], robot: Robot, path: GeometricPath) -> None:
+    """Refuse a radius beyond all of the tip's places: it was meant in another unit."""
+    kinematics = robot.kinematics(robot.tip)
+    places = np.array([kinematics.pose(q).origin for q in np.array(path.lines)])
+    widest = max(float(np.linalg.norm(places - place, axis=1).max()) for place in places)
+    for word, radius in zip(words, radii):
+        if radius > widest:
+            meant = (
+                f"were millimetres meant? give {word.strip()}mm" if is_number(word) else "give less"
+            )
+            raise ValueError(
+                f"a radius of --blend is {radius:g} m, and the tip's places at the waypoints are "
+                f"at most {widest:.3g} m apart; {meant}"
+            )
 
 
 def _tolerance(given: Given, robot: Robot) -> float | None:

@@ -74,7 +74,7 @@ def test_the_answer_is_a_message_of_the_same_joints_along_the_same_path(robot, m
     ("change", "words"),
     [
         (lambda m: m.pop("trajectory"), "no JointTrajectory; give one with joint_names"),
-        (lambda m: m["trajectory"]["joint_trajectory"].update(points=[]), "without positions"),
+        (lambda m: m["trajectory"]["joint_trajectory"].update(points=[]), "has no points"),
         (
             lambda m: m["trajectory"]["joint_trajectory"]["points"][0].update(
                 velocities=[0.3, 0.0, 0.0]

@@ -268,7 +268,7 @@ def _off_straight_words(robot: Robot, path: GeometricPath) -> list[str]:
     what = "path" if path.lines else "spline"
     return [
         f"the {what} is up to {size:.2g} {unit} from the straight lines between waypoints, at "
-        f"joint {name}{f' ({less})' if less else ''}, and the tip "
+        f"{name}{f' ({less})' if less else ''}, and the tip "
         f"{1e3 * robot.off_straight(path):.2g} mm"
     ]
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import listed, positive, quoted
+from quietarm.models.number_checks import how_named, listed, positive, quoted
 from quietarm.models.robot.dynamics.kinematics import Kinematics, Pose
 from quietarm.models.robot.dynamics.moving_robot import MovingRobot
 from quietarm.models.robot.path.joint_table import read_joint_table
@@ -409,9 +409,11 @@ class GeometricPath:
         names = tuple(joints) or robot.joints
         points = _rows(waypoints)
         if points.shape[1] != len(names) or not {*robot.joints} <= {*names}:
+            missing = [name for name in robot.joints if name not in names]
+            hints = how_named([name for name in names if name not in robot.joints], missing)
             raise ValueError(
                 f"the waypoints are of {listed(names)}, {points.shape[1]} numbers each, and the "
-                f"robot drives {listed(robot.joints)}; give a position of each"
+                f"robot drives {listed(robot.joints)}; give a position of each{hints}"
             )
         moving = [f"warning: {words}" for words in moves_undriven(robot, names, points)]
         order = [names.index(name) for name in robot.joints]
@@ -424,9 +426,9 @@ class GeometricPath:
         path = cls(*_plain(rounded), robot.joints)
         passed = tuple(
             f"waypoint {number} is passed at {1e3 * distance:.2g} mm, blended within "
-            f"{1e3 * within:.3g} mm"
-            for number, distance, within in zip(
-                numbers[1:], _passed(rounded, kinematics, points, halves), reached
+            f"{1e3 * within:.3g} mm{_half_of_line(within, radius_there)}"
+            for number, distance, within, radius_there in zip(
+                numbers[1:], _passed(rounded, kinematics, points, halves), reached, radii
             )
         )
         lines = tuple(map(tuple, points.tolist()))
@@ -653,6 +655,13 @@ def _radii(radius: float | Sequence[float], corners: int) -> Array:
             "last; give one for all, or one of each"
         )
     return np.array([positive("radius of a blend", value, "m") for value in several])
+
+
+def _half_of_line(within: float, radius: float) -> str:
+    """Say that a corner is less round than its radius, as a line's half is nearer."""
+    if within > 0.999 * radius:
+        return ""
+    return f" in place of {1e3 * radius:.3g} mm, as half of a line is nearer"
 
 
 def _passed(path: Piecewise, kinematics: Kinematics, points: Array, halves: Array) -> list[float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import quoted
+from quietarm.models.number_checks import joined, listed, quoted
+from quietarm.models.robot.path.table_headings import Headings, cell_value, read_headings
 from quietarm.models.robot.text_files import read_text, read_yaml
 
 _MESSAGES = (".yaml", ".yml", ".json", ".moveit")
@@ -143,7 +144,10 @@ def table_of_message(
             f"{what} is no JointTrajectory; give one with joint_names and points, or a csv"
         )
     if len(positioned) > 1:
-        raise ValueError(f"{what} has {len(positioned)} trajectories; give a file of one of them")
+        raise ValueError(
+            f"{what} has {len(positioned)} trajectories: {_several_words(positioned)}; give a file "
+            "of one of them"
+        )
     (trajectory,) = positioned
     points = trajectory["points"]
     names = tuple(map(str, trajectory["joint_names"] or ()))
@@ -151,9 +155,11 @@ def table_of_message(
         raise ValueError(
             f"{what} is cut off at '...'; write it whole, by ros2 topic echo --full-length"
         )
+    if not points:
+        raise ValueError(f"{what} has no points; give two or more")
     positions = _entries(points, "positions")
-    if positions is None or positions.ndim != 2:
-        raise ValueError(f"{what} has a point without positions of all joints; write it again")
+    if positions is None or positions.ndim != 2 or positions.shape[1] != len(names or positions[0]):
+        raise ValueError(f"{what} {_short_point(points, names)}; write it again")
     others = {entry for point in points for entry, value in point.items() if value}
     unused = [
         words for entry, words in _BESIDE_POSITIONS.items() if entry in others and entry not in used
@@ -171,6 +177,31 @@ def table_of_message(
         remarks=tuple(remarks),
         frame=_frame_of(trajectory.get("header")),
     )
+
+
+def _several_words(trajectories: Sequence[Mapping[str, Any]]) -> str:
+    """Say of each trajectory how many points it has, and of which joints."""
+    return joined(
+        f"number {number} with {len(one['points'] or ())} points of "
+        f"{listed(map(str, one['joint_names'] or ()))}"
+        for number, one in enumerate(trajectories[:_NAMED], start=1)
+    ) + (f", and {len(trajectories) - _NAMED} more" if len(trajectories) > _NAMED else "")
+
+
+def _short_point(points: Any, names: Sequence[str]) -> str:
+    """Say which point has not a position of every joint."""
+    if isinstance(points, list):
+        for number, point in enumerate(points, start=1):
+            values = point.get("positions") if isinstance(point, Mapping) else None
+            if isinstance(values, str) or not isinstance(values, Sequence) or not values:
+                return f"has no positions at point {number} of {len(points)}"
+            if len(values) != len(names or points[0]["positions"]):
+                wanted = len(names or points[0]["positions"])
+                return f"has {len(values)} of {wanted} positions at point {number} of {len(points)}"
+            for value in values:
+                if isinstance(value, bool) or not isinstance(value, int | float):
+                    return f"has position {quoted(value)} at point {number} of {len(points)}"
+    return "has points that are no list of positions by joint"
 
 
 def _frame_of(header: object) -> str:
@@ -279,37 +310,56 @@ def _table_of(path: str | Path) -> JointTable:
         if mark is None
         else list(csv.reader(io.StringIO("\n".join(lines)), delimiter=mark))
     )
-    names = tuple[str, ...]()
     if mark != ",":
         rows = _with_points(rows, str(path))
+    headings = None
     try:
-        [float(cell) for cell in rows[0]]
+        [cell_value(cell) for cell in rows[0]]
     except ValueError:
-        names = tuple(cell.strip() for cell in rows[0])
+        headings = read_headings(rows[0])
+        names = rows[0]
         rows = rows[1:]
+    else:
+        names = []
     if len({len(row) for row in rows}) != 1:
         raise ValueError(
             f"path {path} has rows of different lengths, or none; give a number for each joint in "
             "each, and semicolons between numbers with decimal commas"
         )
+    if headings is not None and len(names) != len(rows[0]):
+        raise ValueError(
+            f"path {path} names {len(names)} columns and has {len(rows[0])} numbers in a row; "
+            "give a number for each name, and semicolons between numbers with decimal commas"
+        )
+    headings = headings or Headings(dict.fromkeys(range(len(rows[0])), ""), {}, [], [])
+    columns = [*headings.times, *headings.joints]
     try:
-        table = np.array([[float(cell) for cell in row] for row in rows])
+        table = {
+            column: _in_si([row[column] for row in rows], headings, column) for column in columns
+        }
     except ValueError as error:
         raise ValueError(
             f"path {path} has a row that is no row of numbers ({error}); give a number for each "
             "joint"
         ) from None
-    if names and len(names) != table.shape[1]:
-        raise ValueError(
-            f"path {path} names {len(names)} columns and has {table.shape[1]} numbers in a row; "
-            "give a number for each name, and semicolons between numbers with decimal commas"
-        )
-    times = [name.lower().split()[0].split("_")[0].split("(")[0] in ("t", "time") for name in names]
-    at = [number for number, is_time in enumerate(times) if is_time]
-    kept = [number for number, is_time in enumerate(times) if not is_time] if names else slice(None)
+    unused = ["times"] if headings.times else []
+    if headings.others:
+        first, *others = headings.others
+        more = f" and {len(others)} more" if others else ""
+        unused.append(f"columns that are no positions, {first}{more}")
     return JointTable(
-        tuple(name for name, is_time in zip(names, times) if not is_time),
-        table[:, kept],
-        times=table[:, at[0]] if len(at) == 1 else None,
-        remarks=("not used of the table: times",) if at else (),
+        headings.names,
+        np.column_stack([table[column] for column in headings.joints]),
+        times=table[headings.times[0]] if len(headings.times) == 1 else None,
+        remarks=(
+            *headings.unit_words,
+            *([f"not used of the table: {' and '.join(unused)}"] if unused else []),
+        ),
     )
+
+
+def _in_si(cells: list[str], headings: Headings, column: int) -> Array:
+    """A column's numbers in SI units, by the unit of the cell or of the heading."""
+    read = [cell_value(cell) for cell in cells]
+    per_unit = headings.per_unit(column)
+    return np.array([value if own else value / per_unit for value, own in read])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 
 from quietarm.interrupts import interruptible
 from quietarm.models.joint_motion import Array
-from quietarm.models.number_checks import listed, quoted
+from quietarm.models.number_checks import how_named, listed, quoted
 from quietarm.models.robot.path.joint_table import JointTable, read_joint_table
 
 
@@ -104,9 +105,11 @@ class TimedMotion:
                 )
             return TimedMotion(names, self.times, self.coefficients, self.points, self.remarks)
         if missing := [name for name in names if name not in self.joints]:
+            others = [name for name in self.joints if name not in names]
             raise ValueError(
                 f"the trajectory is of the joints {listed(self.joints)}, without "
                 f"{listed(missing)}, which the robot drives; give a trajectory of these as well"
+                f"{how_named(others, missing)}"
             )
         for name in self.joints:
             if self.joints.count(name) > 1:
@@ -161,7 +164,58 @@ def _checked(table: JointTable) -> Array:
             f"is at {times[at]:g} s at point {at + 1} and at {times[at - 1]:g} s before; give "
             "times that increase"
         )
+    check_rates(table)
     return times - times[0]
+
+
+def check_rates(table: JointTable) -> None:
+    """Refuse speeds and accelerations of a table far beyond what they are rates of.
+
+    Sums of all pieces are compared, so that a stop, a jerk or few points are no fault.
+    """
+    if table.times is None or table.velocities is None:
+        return
+    lengths = np.diff(table.times)[:, None]
+    rates = [("velocities", table.velocities, table.positions, "positions", "rad/s", _FASTER)]
+    if table.accelerations is not None:
+        rates.append((
+            "accelerations", table.accelerations, table.velocities, "velocities", "rad/s^2",
+            _STEEPER,
+        ))  # fmt: skip
+    for name, rate, values, of_values, unit, most in rates:
+        ways = np.abs(lengths * (rate[:-1] + rate[1:]) / 2).sum(axis=0)
+        stated = np.abs(np.diff(values, axis=0)).sum(axis=0)
+        noticed = ways > max(_LEAST_WAY, _NOTICED * ways.max())
+        times_it = np.where(noticed, ways / np.maximum(stated, 1e-9), 0.0)
+        joint = int(times_it.argmax())
+        ratio = float(times_it[joint])
+        if ratio > most:
+            whose = table.joints[joint] if table.joints else f"joint {joint + 1}"
+            raise ValueError(
+                f"has {name} of {whose} that are {ratio:.3g} times what its {of_values} and times "
+                f"make; {_unit_words(ratio, name, unit)} or leave them out"
+            )
+
+
+def _unit_words(ratio: float, name: str, unit: str) -> str:
+    """Ask for the unit in which rates are so many times too large."""
+    if 0.7 * _DEGREES < ratio < 1.4 * _DEGREES:
+        return f"{name} are in {unit}, were degrees meant? give {unit},"
+    if 0.7e3 < ratio < 1.4e3:
+        unit = unit.replace("rad", "m")
+        return f"{name} are in {unit}, were millimetres meant? give {unit},"
+    return f"give {name} of the same motion,"
+
+
+_DEGREES = math.degrees(1.0)
+_FASTER = 5.0
+_STEEPER = 20.0
+"""So many times what is stated make other units of speeds, and of accelerations: of these a time
+parametrisation switches between bounds within a piece."""
+_NOTICED = 0.05
+"""Share of the largest way of a joint from which on another one's is compared."""
+_LEAST_WAY = 1e-3
+"""The same as a way [rad or m], or a speed."""
 
 
 def _of_spline(times: Array, points: Array) -> tuple[Array, Array]:

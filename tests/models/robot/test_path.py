@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from small_robots import ARM, ARM_FILE, write_robot
 
 import quietarm as qa
+from quietarm.models.robot.path.joint_table import read_joint_table
 from quietarm.ocp.saved import plain, typed
 
 PLACES = np.linspace(0.0, 1.0, 401)
@@ -112,6 +113,35 @@ def test_a_csv_without_names_is_in_the_order_of_the_robots_joints(tmp_path, mark
         assert qa.GeometricPath.load(file)(1.0) == pytest.approx([0.9, 0.2])
 
 
+@pytest.mark.parametrize(("heading", "row"), [
+    ("a_deg;b_mm", "90;5,5"),
+    ("a [deg];b (mm)", "90;5,5"),
+    ("time_ms;a_angle_deg;b_position_mm;a_speed_rad_s;tip_x_mm", "8;90;5.5;3;4"),  # of export
+    ("time_s,a_angle_rev,b_position_m", "0.008,0.25,0.0055"),
+    ("a;b", "90deg;5.5mm"),
+    ("", "90deg;5.5mm"),
+])  # fmt: skip
+def test_a_csv_says_its_units_in_headings_or_cells(tmp_path, heading, row):
+    file = tmp_path / "waypoints.csv"
+    zeros = ";".join("0" for _ in row.split(";")) if ";" in row else "0,0,0"
+    file.write_text("\n".join(filter(None, [heading, zeros, row])))
+    table = read_joint_table(file)
+    assert table.joints == (("a", "b") if heading else ())
+    assert table.positions[1] == pytest.approx([np.pi / 2, 0.0055])
+    if table.times is not None:
+        assert table.times[1] == pytest.approx(0.008)
+    told = " ".join(table.remarks)
+    assert ("a_speed_rad_s and 1 more" in told) == ("speed" in heading)
+    assert ("read of a in" in told) == (heading not in ("", "a;b"))
+
+
+def test_a_name_may_end_like_a_unit(tmp_path):
+    file = tmp_path / "waypoints.csv"
+    file.write_text("left_m,b\n0,0\n1,2\n")
+    table = read_joint_table(file)
+    assert (table.joints, table.positions[1].tolist()) == (("left_m", "b"), [1.0, 2.0])
+
+
 @pytest.mark.parametrize("wrapped", [False, True])
 def test_a_joint_trajectory_gives_its_positions_and_no_times(tmp_path, wrapped):
     lines = [
@@ -139,7 +169,11 @@ def test_a_joint_trajectory_gives_its_positions_and_no_times(tmp_path, wrapped):
     ("a.csv", "1,5;2\n3.5;2\n", "commas and with decimal points, such as '1,5' and '3.5'"),
     ("a.csv", "1,2\n1,2\n", "a.csv: the path has a length of 0"),
     ("a.yaml", "points: 3\n", "is no JointTrajectory"),
-    ("a.yaml", "joint_names: [a]\npoints: [{x: 1}]\n", "a point without positions"),
+    ("a.yaml", "joint_names: [a]\npoints: [{x: 1}]\n", "has no positions at point 1 of 1; write"),
+    ("a.yaml", "joint_names: [a]\npoints: []\n", "a.yaml has no points; give two or more"),
+    ("a.yaml", "joint_names: [a, b]\npoints: [{positions: [1, 2]}, {positions: [1]}]\n",
+     "has 1 of 2 positions at point 2 of 2"),
+    ("a.yaml", "joint_names: [a]\npoints: [{positions: [x]}]\n", "has position 'x' at point 1"),
     ("a.yaml", "a: [\n", "is no valid YAML"),
 ])  # fmt: skip
 def test_a_file_that_holds_no_path_is_refused(tmp_path, name, text, words):
@@ -257,7 +291,8 @@ def test_a_trajectory_is_found_within_other_messages(tmp_path, text):
 
 @pytest.mark.parametrize(("text", "words"), [
     (f"{TRAJECTORY}---\n{TRAJECTORY}---\n", "has 2 documents; give one"),
-    (_within("first", TRAJECTORY) + _within("second", TRAJECTORY), "has 2 trajectories; give a"),
+    (_within("first", TRAJECTORY) + _within("second", TRAJECTORY),
+     "has 2 trajectories: number 1 with 3 points of a, b and number 2 with 3 points of a, b; give"),
     (EMPTY, "is no JointTrajectory"),
     (TRAJECTORY.replace("[a, b]", "[a, a]"), "the path has joint 'a' twice"),
     ("joint_names: [a]\npoints:\n- {transforms: [{x: 1}]}\n", "is no JointTrajectory"),

@@ -335,8 +335,23 @@ def test_a_text_never_names_a_file(tmp_path):
     assert qa.Robot(urdf=file, elastic_joints=GEARS) == qa.Robot(urdf=URDF, elastic_joints=GEARS)
     with pytest.raises(ValueError, match=r"urdf is no text of a URDF.*its file as a pathlib.Path"):
         qa.Robot(urdf=str(file), elastic_joints=GEARS)
-    with pytest.raises(TypeError, match=r"urdf is 3; give the text of a URDF, or a file as a Path"):
-        qa.Robot(urdf=3)
+
+
+def test_an_argument_of_a_wrong_type_is_refused_with_what_is_wanted():
+    for entries, words in (
+        ({"urdf": 3}, r"urdf is 3; give the text of a URDF, or a file as a Path"),
+        ({"beam": {"at": "tool"}}, r"beam is \{'at': 'tool'\}; give qa\.models\.Beam\(at="),
+        ({"joints": "a"}, "joints is 'a'; give a list of names"),
+        ({"springs": {"a": "soft"}}, "spring of a in springs is 'soft'; give qa.models.Spring"),
+        ({"gravity": 9.81}, "gravity is 9.81; give three numbers"),
+        (
+            {"limits": {"a": 3}},
+            r"limits has joint 'a' where a quantity belongs; .* \{'speed': \{'a'",
+        ),
+        ({"limits": {"speed": {"x": 3}}}, "no driven joint, for limits of speed, 'x'"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=words):
+            qa.Robot(**{"urdf": ARM, **entries})
 
 
 def test_rows_of_other_stiffness_move_as_the_robots_that_have_it():

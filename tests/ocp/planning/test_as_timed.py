@@ -1,5 +1,6 @@
 """Trajectories as they are timed: figures against plans, closed forms and MuJoCo."""
 
+from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -10,6 +11,7 @@ from trajectories import trajectory_text, trapezoid
 
 import quietarm as qa
 from quietarm.models import TimedMotion
+from quietarm.models.robot.path.joint_table import read_joint_table
 from quietarm.ocp import evaluate_as_timed
 
 NAMES = ("a", "b")
@@ -90,6 +92,23 @@ def test_cubics_between_points_jump_in_their_accelerations(tmp_path):
     motion = TimedMotion.load(tmp_path / "two.yaml")
     assert motion.steps[:, 0] == pytest.approx([6.0, 6.0])
     assert motion.remarks == ("without accelerations its points are joined by cubics",)
+
+
+@pytest.mark.parametrize(("entry", "factor", "words"), [
+    ("velocities", np.degrees(1.0), "velocities are in rad/s, were degrees meant"),
+    ("velocities", 1e3, "velocities are in m/s, were millimetres meant"),
+    ("velocities", 10.0, "times what its positions and times make; give velocities of the same"),
+    ("accelerations", np.degrees(1.0), r"accelerations are in rad/s\^2, were degrees meant"),
+    ("velocities", 3.0, None),  # of few points, maybe
+])  # fmt: skip
+def test_rates_that_are_none_of_their_positions_are_refused(trapezoid_file, entry, factor, words):
+    table = read_joint_table(trapezoid_file)
+    table = replace(table, **{entry: factor * getattr(table, entry)})
+    if words is None:
+        assert TimedMotion.of_table(table).joints == table.joints
+        return
+    with pytest.raises(ValueError, match=words):
+        TimedMotion.of_table(table)
 
 
 @pytest.mark.parametrize(("change", "words"), [

@@ -1,6 +1,7 @@
 """Files of robots, limits and paths on the command line: what is used, named and refused."""
 
 import re
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -27,18 +28,26 @@ def test_limits_of_a_gripper_are_no_limits_of_the_move(folder, call):
     assert "grip" not in out
 
 
-def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call):
+def test_the_task_of_a_command_is_the_one_that_the_robot_makes(folder, call, refused):
     file = write_robot(folder, ARM, ARM_FILE, "a: {max_acceleration: 8}")
     limits = "--torque-limit a=90 --speed-limit b=170"
-    code, out, _ = call(f"evaluate robot.yaml {MOVE} {limits} --output plan.json")
+    code, out, _ = call(f"evaluate robot.yaml {MOVE} {limits}")
     assert code == 0
     far = "warning: speed limit far above the URDF's: b 170 rad/s (URDF 3); were degrees meant?"
     assert far in _words(out)
     assert out.count("far above") == 1
+    move = f"evaluate robot.yaml {MOVE} --torque-limit a=90"
+    removed = "--acceleration-limit none --speed-limit b=none"
+    assert call(f"{move} {removed} --output plan.json")[0] == 0
     path = qa.GeometricPath.line([0.0, 0.0], [0.4, 0.3], joints=("a", "b"))
-    task = qa.Robot.load(file).task(path, 1.0, torque_limit={"a": 90.0}, speed_limit={"b": 170.0})
+    robot = qa.Robot.load(file)
+    task = robot.task(path, 1.0, torque_limit={"a": 90.0}, acceleration_limit=None)
+    assert [limit.name for limit in task.limits] == ["torque", "speed"]
+    task = replace(task, bounds={**task.bounds, "speed": {"a": task.bounds["speed"]["a"]}})
     assert qa.Plan.load("plan.json").task == task
-    assert [limit.name for limit in task.limits] == ["torque", "speed", "acceleration"]
+    all_kept = robot.task(path, 1.0, torque_limit={"a": 90.0})
+    assert [limit.name for limit in all_kept.limits] == ["torque", "speed", "acceleration"]
+    assert "robot has no joint 'c'" in refused(f"{move} --speed-limit c=none")
 
 
 def test_what_a_file_of_limits_leaves_out_stands_beside_the_figures(folder, call):
@@ -65,7 +74,7 @@ def test_the_path_says_how_far_its_spline_swings_out(folder, call):
     write_robot(folder, ARM, ARM_FILE)
     Path("way.csv").write_text("time,a,b,grip\n0,0,0,0\n1,0.5,0,0\n2,0.5,0.5,0\n3,0,0.5,0\n")
     # of joint a by hand: the natural quintic passes the middle of the square's side at 0.5625
-    swing = "up to 0.11 rad from the straight lines between waypoints, at joint b (a 0.063 rad)"
+    swing = "up to 0.11 rad from the straight lines between waypoints, at b (a 0.063 rad)"
     for line in ("list robot.yaml", "evaluate robot.yaml --duration 2 --coefficients=0"):
         code, out, _ = call(f"{line} --path way.csv")
         words = _words(out)
@@ -115,6 +124,7 @@ def test_radii_that_do_not_fit_the_waypoints_are_refused(folder, refused):
     Path("points.csv").write_text("b,a\n0,0\n0.3,0.5\n0.9,0.2\n1.2,0.8\n")
     for words, remedy in (
         ("--blend 2deg", "'2deg' is not a radius of --blend"),
+        ("--blend 50", "m apart; were millimetres meant? give 50mm"),
         ("--blend 1mm,2mm,3mm", "path points.csv: there are 3 radii and 2 waypoints between"),
         ("--waypoints 3:4 --blend 5mm", "a blend is at a waypoint between two others"),
     ):
