@@ -4,6 +4,9 @@ The energy is minimised within one residual limit after another, by derivatives 
 differences; every candidate that they take counts. The first has no limit, from a random start.
 Those between zero and what the cheapest motion leaves fall, each from the motion of the next larger
 one (continuation), or are drawn, each from a random start.
+
+SLSQP ends on the limits of a move, and a hair beyond them. The verification sees peaks between the
+steps of a search, so a small share of every limit is kept free (`kept_free`).
 """
 
 from __future__ import annotations
@@ -159,7 +162,7 @@ def _least_energy(
         constraints.append(
             {
                 "type": "ineq",
-                "fun": lambda x: -differences.values(x)[first:],
+                "fun": lambda x: -differences.values(x)[first:] - function.kept_free,
                 "jac": lambda x: -differences.slopes(x)[first:],
             }
         )

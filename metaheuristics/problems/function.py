@@ -30,6 +30,8 @@ from quietarm.ocp.record import Record, coefficient_bound
 from quietarm.ocp.simulation.evaluator import Evaluation
 
 Array = NDArray[np.float64]
+KEPT_FREE = 0.005
+"""Share of every limit: the verification sees peaks between the steps of a search."""
 
 
 class MoveFunction(ProblemFunction):
@@ -97,6 +99,11 @@ class MoveFunction(ProblemFunction):
         measured = with_peaks_measured(task, self.peaks)
         self._evaluator = search_evaluator(measured, profile, steps, threads)
         self._limited = [limit.name for limit in task.limits]
+
+    @property
+    def kept_free(self) -> float:
+        """Return the share of a limit that a method which ends on limits keeps free."""
+        return KEPT_FREE
 
     @interruptible
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:

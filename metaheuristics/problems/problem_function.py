@@ -55,6 +55,14 @@ class ProblemFunction(ABC):
         return True
 
     @property
+    def kept_free(self) -> float:
+        """Return by how much a method that ends on constraints keeps violations below zero.
+
+        It is 0 unless violations are shares of a limit: a user's own have units of their own.
+        """
+        return 0.0
+
+    @property
     def corner(self) -> tuple[float, ...] | None:
         """Return the corner that hypervolumes are measured from; None as of `reference`."""
         return self.reference

@@ -219,6 +219,11 @@ class RecordedFunction(ProblemFunction):
         return self.asked.of_model
 
     @property
+    def kept_free(self) -> float:
+        """Return by how much a method that ends on constraints keeps violations below zero."""
+        return self.asked.kept_free
+
+    @property
     def corner(self) -> tuple[float, ...] | None:
         """Return the corner that hypervolumes are measured from."""
         return self.asked.corner

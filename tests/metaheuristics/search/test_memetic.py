@@ -148,3 +148,13 @@ def test_a_candidate_counts_once_for_all_scenarios_of_an_uncertain_task():
     assert last.evaluations == 600
     assert scenarios > 1
     assert 0 < 7 * last.gradients / scenarios <= 600
+
+
+def test_slsqp_within_limits_keeps_its_motions():
+    """It ends on limits: without room the verification keeps no motion of this one."""
+    problem = problem_of("linear-axis-m4-6-absolute-jerk-tight")
+    front = qa.search(
+        problem.task, problem.profile, algorithm="slsqp", bound=problem.bound, evaluations=400,
+        seed=3,
+    )  # fmt: skip
+    assert len(front.points) > 5
