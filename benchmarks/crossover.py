@@ -92,9 +92,12 @@ def main(typed: list[str] | None = None) -> int:
 
         write_page(options.results)
     elif options.tune:
+        from parts.crossover.limits import OF_TUNING, write_limits
         from parts.crossover.tuning import tune
 
         moves = read_moves(options.results / "moves.csv")
+        if options.cell.startswith("limits") and not OF_TUNING.exists():
+            write_limits([move for move in moves if move.tuning], OF_TUNING)
         table = options.results / "tuning.csv"
         for method in options.tune:
             tune(method, options.cell, moves, options.trials, options.folder, table)

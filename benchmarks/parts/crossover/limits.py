@@ -20,7 +20,7 @@ from .tables import write_table
 
 TABLE = Path(__file__).parents[3] / "docs" / "results" / "limits.csv"
 OF_TUNING = TABLE.with_name("limits_of_tuning.csv")
-"""Limits of the moves of tuning."""
+"""Limits of the moves of tuning, written before the first of them is tuned."""
 STEP = 0.05
 WAY = {"tight": 0.25, "loose": 0.75}
 """How far a limit lies from the least share to 1."""
@@ -31,7 +31,10 @@ LIMITS = tuple(f"{kind}-{way}" for kind in QUANTITIES for way in WAY)
 
 def limits_of(move: str, name: str) -> dict[str, float]:
     """Return the limits of a move by their names in a task; none without a name."""
-    return (_limits(TABLE) | _limits(OF_TUNING))[move, name] if name else {}
+    if not name:
+        return {}
+    tested = _limits(TABLE)
+    return tested[move, name] if (move, name) in tested else _limits(OF_TUNING)[move, name]
 
 
 @cache

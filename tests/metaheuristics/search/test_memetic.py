@@ -153,7 +153,7 @@ def test_a_candidate_counts_once_for_all_scenarios_of_an_uncertain_task():
 def test_slsqp_within_limits_keeps_its_motions():
     """It ends on limits: without room the verification keeps no motion of this one."""
     problem = problem_of("linear-axis-m4-6-absolute-jerk-tight")
-    front = qa.search(
+    front = search(
         problem.task, problem.profile, algorithm="slsqp", bound=problem.bound, evaluations=400,
         seed=3,
     )  # fmt: skip
