@@ -81,8 +81,8 @@ const drawAll = () => {
 };
 const invitation = (move, several) => {
   if (!several) return unbroken(`${move.title}; the plain cycloid of the same move is drawn behind it.`);
-  const ways = unbroken(`${move.title}. Each point is a way to make this move.`);
-  return move.joined ? `${ways} Drag the ring: left is stiller, right takes less energy.` : `${ways} Drag the ring from one to the next.`;
+  const ways = "Each point is a way to make this move.";
+  return move.joined ? `${ways} Drag the ring: left is stiller, right takes less energy.` : unbroken(`${move.title}. ${ways} Drag the ring from one to the next.`);
 };
 // Motions with names, of which some may lie on each other.
 const beginNames = (points) => {
