@@ -212,7 +212,7 @@ def nearest(name: str, known: Collection[str]) -> str:
 
 
 def how_named(names: Collection[str], known: Collection[str]) -> str:
-    """How names differ from known ones: all by what stands before or behind, or each by letters."""
+    """Return how names differ from known ones: all by a prefix or an ending, or each by letters."""
     for place, rest in (("before", str.removesuffix), ("behind", str.removeprefix)):
         added = [{rest(name, other) for name in names} - {*names} for other in known]
         common = set[str].intersection(*added) - {""} if len(added) > 1 else set[str]()

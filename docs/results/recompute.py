@@ -762,12 +762,17 @@ ROWS = (
 def judged_rows(results: Results) -> list[dict[str, Any]]:
     """The first table: every row's search, chosen on the first seeds and judged on fresh ones.
 
-    Holm's p is over all comparisons of the table, by each indicator apart.
+    Holm's p is over all comparisons of the table, each by the indicator of its row. By any other
+    indicator it is over all comparisons by that one.
     """
     rows = [judged(results, row) for row in ROWS]
-    comparisons = [comparison for row in rows for comparison in row["comparisons"]]
-    for indicator in INDICATORS:
-        tests = [c["by"][indicator] for c in comparisons if indicator in c["by"]]
+    comparisons = [(row, comparison) for row in rows for comparison in row["comparisons"]]
+    of_indicators = [
+        [comparison["by"][name] for _, comparison in comparisons if name in comparison["by"]]
+        for name in INDICATORS
+    ]
+    of_table = [comparison["by"][row["measure"]] for row, comparison in comparisons]
+    for tests in (*of_indicators, of_table):
         for test, p in zip(tests, holm([test["p"] for test in tests]), strict=True):
             test["holm"] = p
     return rows

@@ -279,8 +279,10 @@ def optima(path: Path) -> list[dict[str, Any]]:
 
 def basins_figures(folder: Path) -> dict[str, Any]:
     """All figures, by family and candidates; and the optima of the problems between posts."""
-    runs = with_all_starts(read(folder / "basins.csv.xz"))
-    figures: dict[str, Any] = {"runs": len(runs), "hours": sum(run.seconds for run in runs) / 3600}
+    read_runs = read(folder / "basins.csv.xz")
+    runs = with_all_starts(read_runs)
+    hours = sum(run.seconds for run in runs) / 3600
+    figures: dict[str, Any] = {"runs": len(read_runs), "hours": hours}
     for family in FAMILIES:
         of_family = [run for run in runs if family_of(run.problem) == family]
         if not of_family or family == "anecdotes":

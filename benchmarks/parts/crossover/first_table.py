@@ -88,6 +88,8 @@ def take_words(row: Row, winner: str, is_sure: bool) -> str:
     """Return what to take, with the words for what is not sure."""
     rival = "the gradient" if row["rival"] == "epsilon" else "`slsqp`"
     taken = f"`{row['search'].partition(' ')[0]}`" if winner == "search" else rival
+    if winner == "search" and "reevaluate" in row["search"]:
+        taken += ", five evaluations of each candidate"
     if is_sure:
         return taken
     if any(is_clear(by_test(row, one)) for one in row["comparisons"]):
@@ -144,11 +146,14 @@ def by_indicators(rows: Sequence[Row]) -> dict[str, Any]:
     """Count what other indicators say of the table's comparisons.
 
     Of those with a verdict: kept by all, lost by some, turned round by some. Of those without one:
-    how many have one by some other indicator, and how many of these are for the search.
+    how many have one by some other indicator, and how many of these are for the search. `energy`
+    is how many are for the search by the energy within 1 mm.
     """
-    counts = {"verdicts": 0, "kept": 0, "lost": 0, "turned": 0, "open": 0, "gained": 0, "search": 0}
+    names = ("verdicts", "kept", "lost", "turned", "open", "gained", "search", "energy")
+    counts = dict.fromkeys(names, 0)
     for row in rows:
         for one in row["comparisons"]:
+            counts["energy"] += side_of(one["by"]["energy"]) == -1
             side = side_of(one["by"][row["measure"]])
             others = {side_of(by) for name, by in one["by"].items() if name != row["measure"]}
             if side:

@@ -21,7 +21,7 @@ _PER_UNIT = {
 
 @dataclass(frozen=True)
 class Headings:
-    """What the columns of a table are.
+    """Columns of a table: the joint and the unit of each.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Headings:
     others: list[str]
 
     def per_unit(self, column: int) -> float:
-        """How many of a column's units make one in SI."""
+        """Return how many of a column's units make one in SI."""
         unit = self.units.get(column, "")
         known = UNITS["s"][1] if column in self.times else _PER_UNIT
         return known.get(unit, 1.0)

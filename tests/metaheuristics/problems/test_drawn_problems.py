@@ -24,10 +24,10 @@ def test_the_tables_are_those_that_were_published(name):
 
 
 def test_names_are_those_of_the_published_scales():
-    """All problems that were run but those with an energy of its own or an integer."""
+    """All problems that were run but those with an own energy, an integer, profile or range."""
     rows = (RESULTS / "scales.csv").read_text().splitlines()[1:]
     published = {row.partition(",")[0] for row in rows}
-    of_its_own = ("stages", "motor-map", "integer")
+    of_its_own = ("stages", "motor-map", "integer", "shaper", "robust", "spline", "gaussians")
     left_out = {name for name in published if name.endswith(of_its_own)}
     assert published - left_out <= set(drawn_problems())
     assert len(drawn_problems()) == 210  # 18 moves by 6 coefficients and 4 limits; 10 by 3 more
