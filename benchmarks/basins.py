@@ -81,7 +81,7 @@ class Run(NamedTuple):
 
     @property
     def key(self) -> tuple[str, str, str, str]:
-        """What tells it from others."""
+        """Return the key that tells it from others."""
         return self.subject.name, self.method, str(self.candidates or ""), str(self.seed)
 
 
@@ -160,7 +160,7 @@ def of_names() -> tuple[Subject, ...]:
 
 
 def rivals(names: Iterable[str]) -> list[str]:
-    """Those whose library can be imported."""
+    """Return the rivals whose library can be imported."""
     return [name for name in names if find_spec(NEEDS[name])]
 
 

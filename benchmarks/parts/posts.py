@@ -169,7 +169,7 @@ class PostsMove:
 
     @cached_property
     def depths(self) -> ca.Function:
-        """How deep the tool is in each post [m], at the worst; not compiled."""
+        """Return how deep the tool is in each post [m], at the worst; not compiled."""
         return ca.Function("depths", [self._symbols], [self._values[2:]])
 
     def _paths(self) -> tuple[Array, Array]:

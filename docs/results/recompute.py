@@ -178,7 +178,7 @@ def run_of(row: Mapping[str, str], scale: Mapping[str, str], axis: str) -> Run:
 
 
 def area(points: Array) -> float:
-    """What points of a scale dominate, up to the corner."""
+    """Return the area that points of a scale dominate, up to the corner."""
     if not len(points):
         return 0.0
     return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1]))
@@ -642,7 +642,7 @@ def energy_of_families(results: Results) -> list[dict[str, Any]]:
 
 
 def parallel_figures(results: Results) -> dict[str, Any]:
-    """What methods lack after a time on many cores, where every evaluation takes as long.
+    """Return the gaps after a time on many cores, where every evaluation takes as long.
 
     A call for so many candidates takes as many evaluations one after another as there are rounds
     of all cores. A run counts as it stood at its last mark before: 10,000 candidates, then

@@ -80,7 +80,7 @@ def family_of(problem: str) -> str:
 
 
 def area(points: Array) -> float:
-    """What points of a scale dominate, up to the corner."""
+    """Return the area that points of a scale dominate, up to the corner."""
     return float(moocore.hypervolume(points, ref=[CORNER] * 2)) if len(points) else 0.0
 
 
@@ -129,7 +129,7 @@ def gaps_of(runs: Sequence[Run]) -> tuple[Gaps, dict[tuple[str, int], list[float
 
 
 def quartile_range(values: Sequence[float]) -> float:
-    """How far the quartiles over seeds are apart."""
+    """Return how far the quartiles over seeds are apart."""
     return float(np.ptp(np.quantile(values, [0.25, 0.75])))
 
 

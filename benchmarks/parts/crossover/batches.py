@@ -1,4 +1,4 @@
-"""How many candidates a method asks for at once: what its time is where cores are many.
+"""Candidates that a method asks for at once: what its time is on many cores.
 
 An evaluation takes one unit of time on one core. So a call for `b` candidates takes the smallest
 whole number of units that is at least `b / cores`, and a run the sum over its calls.
