@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from scipy.stats import rankdata, spearmanr, wilcoxon
 
 sys.path.append(str(Path(__file__).parent))
-from recompute_basins import basins_figures
+from recomputing.basins import basins_figures
 
 Array = NDArray[np.float64]
 CORNER = 1.1
