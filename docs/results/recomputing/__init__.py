@@ -1,1 +1,1 @@
-"""The parts of recompute.py: the files, what is measured by, and a file for each group of figures."""
+"""The parts of recompute.py: the files, the measures, and a file for each group of figures."""
