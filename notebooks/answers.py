@@ -3,10 +3,12 @@
 They are the solutions in other words. Whoever wants to be checked reads them last.
 """
 
+import re
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import metadata
 from math import ceil, log, pi
+from pathlib import Path
 from typing import ClassVar
 
 import casadi
@@ -34,6 +36,7 @@ ARM = qa.ArmOnFlexibleLink()
 TURN = qa.PointToPoint(ARM, target=pi / 2, duration=0.8)
 BOX = 0.2
 """Equation (12)."""
+FOUR = qa.CycloidPolynomial(4)
 SIX = qa.CycloidPolynomial(6)
 
 
@@ -551,6 +554,97 @@ def left_by_the_frequency_alone():
     return left_by(qa.plan_move(task, SIX))
 
 
+# 15 Any simulator; MuJoCo is loaded where it is needed
+
+
+def arm_in_mujoco(**servo):
+    """The arm of docs/simulators.md in MuJoCo, with the servo's gains if they are given."""
+    import mujoco
+
+    page = Path(__file__).parents[1] / "docs" / "simulators.md"
+    text = page.read_text(encoding="utf-8").partition("```xml\n")[2].partition("```")[0]
+    for gain, value in servo.items():
+        text = re.sub(f'{gain}="[^"]*"', f'{gain}="{value}"', text)
+    return mujoco.MjModel.from_xml_string(text)
+
+
+def swung(model, coefficients):
+    """Residual [m] and energy [J] of a motion in MuJoCo, and what is missing of 2 mm [m]."""
+    import mujoco
+
+    data = mujoco.MjData(model)
+    residual, energy, nearest = 0.0, 0.0, np.inf
+    for time, *sent, _ in zip(*qa.motion_of(MOVE, FOUR, coefficients, after=0.4), strict=True):
+        data.ctrl = sent
+        mujoco.mj_step(model, data)
+        x, y, _, clearance, speed, torque = data.sensordata
+        nearest = min(nearest, clearance)
+        if time < MOVE.duration:
+            energy += 1e-3 * abs(speed * torque)
+        else:
+            residual = max(residual, abs(complex(x, y) - 0.4 * np.exp(1j * MOVE.target)))
+    return (residual, energy), (0.002 - nearest,)
+
+
+def plan_for_the_arm():
+    """The plan by the mass matrix of the arm, without friction, backlash and post."""
+    import mujoco
+
+    data = mujoco.MjData(arm_in_mujoco())
+    mujoco.mj_forward(data.model, data)
+    masses = np.zeros((3, 3))
+    mujoco.mj_fullM(data.model, data, masses)
+    outer, coupling = masses[2, 2], masses[1, 2]
+    plant = qa.SingleLinkManipulator(
+        alpha1=masses[0, 0] + masses[1, 1],
+        alpha2=coupling / 0.2,
+        c=0.0,
+        beta1=0.2 * coupling / outer,
+        beta2=coupling / outer - 1,
+        zeta=0.0005 / (2 * np.sqrt(0.3 * outer)),
+        omega=np.sqrt(0.3 / outer),
+        phi=1.0,
+    )
+    return qa.plan_move(replace(MOVE, plant=plant), FOUR)
+
+
+def left_with_a_stiffer_servo():
+    stiff = arm_in_mujoco(kp=160, kv=1.6)
+    stiff.joint("motor").frictionloss = 0
+    stiff.tendon_range[0] = -1e-5, 1e-5
+    stiff.geom("post").pos = 1, 0, 0
+    (residual, _), _ = swung(stiff, plan_for_the_arm().coefficients)
+    return 1e3 * residual
+
+
+@cache
+def drawn_motions():
+    """The front of 200 random candidates of the arm."""
+    model = arm_in_mujoco()
+    lower, upper = FOUR.box(0.3)
+    return qa.search(
+        lambda candidate: swung(model, candidate),
+        lower=lower,
+        upper=upper,
+        constraints=["clearance"],
+        evaluations=200,
+        algorithm="random",
+        seed=1,
+    )
+
+
+def clear_and_least_by_chance():
+    drawn = drawn_motions()
+    return [200 - drawn.infeasible, 1e3 * drawn.smallest_residual().residual]
+
+
+def left_with_a_worn_gear():
+    worn = arm_in_mujoco()
+    worn.tendon_range[0] = -0.006, 0.006
+    (residual, _), _ = swung(worn, drawn_motions().smallest_residual().coefficients)
+    return 1e3 * residual
+
+
 EXERCISES = {
     "01": (
         Numbers(
@@ -744,6 +838,24 @@ EXERCISES = {
             "mm",
             left_by_the_frequency_alone,
             tolerance=0.1,
+        ),
+    ),
+    "15": (
+        Numbers(
+            "what the plan leaves with the stiffer servo",
+            "mm",
+            left_with_a_stiffer_servo,
+            tolerance=0.05,
+        ),
+        Numbers(
+            "how many candidates keep clear, and their smallest residual [mm]",
+            "-",
+            clear_and_least_by_chance,
+            count=2,
+            tolerance=0.05,
+        ),
+        Numbers(
+            "what the motion leaves with the worn gear", "mm", left_with_a_worn_gear, tolerance=0.05
         ),
     ),
 }

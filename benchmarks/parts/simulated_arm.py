@@ -1,9 +1,8 @@
 """The arm of docs/simulators.md in MuJoCo, many candidates a call: dry friction, backlash, a post.
 
-The model is the page's. Its servo is two of MuJoCo's actuators here, so that MuJoCo's own rollout
-takes all steps. In place of the page's post, which stands beside the target, there is none, or one
-that comes into the way and leaves it again: an arm passes before it or after it, so that there are
-two basins.
+The model is the page's, and MuJoCo's own rollout takes all steps. In place of the page's post,
+which stands beside the target, there is none, or one that comes into the way and leaves it again:
+an arm passes before it or after it, so that there are two basins.
 """
 
 from __future__ import annotations
@@ -23,15 +22,8 @@ import quietarm as qa
 
 Array = NDArray[np.float64]
 PAGE = Path(__file__).parents[2] / "docs" / "simulators.md"
-STIFFNESS, DAMPING = 40.0, 0.8
-"""The servo's gains [N m/rad, N m s/rad], as on the page."""
 STEP, AFTER = 1e-3, 0.4
 """Seconds of a step, and how long the arm is watched after the move."""
-SERVO = f"""<actuator>
-  <position joint="motor" kp="{STIFFNESS:g}"/><velocity joint="motor" kv="{DAMPING:g}"/>
-  </actuator><sensor>
-  <framepos objtype="site" objname="end"/><jointvel joint="motor"/>
-  <actuatorfrc actuator="servo0"/><actuatorfrc actuator="servo1"/>{{touch}}</sensor>"""
 CROSSING = """<body name="post" pos="{x:.9g} {y:.9g} 0">
   <joint name="slide" type="slide" axis="{along_x:.9g} {along_y:.9g} 0"
     stiffness="{stiffness:.9g}"/>
@@ -59,17 +51,14 @@ def post_words() -> str:
 
 
 def model_of(crosses: bool) -> mujoco.MjModel:
-    """The page's model with its servo in MuJoCo, and with a post that crosses the way, or none."""
-    text = re.search(r'from_xml_string\("""(.*?)"""\)', PAGE.read_text(), re.DOTALL)
-    if text is None:
+    """The page's model, with a post that crosses the way in place of its post, or with none."""
+    found = re.search(r"^```xml\n(.*?)^```$", PAGE.read_text(), re.DOTALL | re.MULTILINE)
+    if found is None:
         raise ValueError(f"{PAGE} has no model of MuJoCo")
-    servo = SERVO.format(touch=TOUCH if crosses else "")
-    for number in (0, 1):
-        kind = ("position", "velocity")[number]
-        servo = servo.replace(f"<{kind} ", f'<{kind} name="servo{number}" ')
-    crossing = post_words() if crosses else ""
-    model = re.sub(r"<actuator>.*?</actuator>", servo, text[1], flags=re.DOTALL)
-    model = re.sub(r'<geom type="cylinder" size="\.008 .*?/>', crossing, model)
+    model = "".join(line for line in found[1].splitlines(True) if '"post"' not in line)
+    if crosses:
+        model = model.replace("</worldbody>", f"{post_words()}</worldbody>")
+        model = model.replace("</sensor>", f"{TOUCH}</sensor>")
     return mujoco.MjModel.from_xml_string(model)
 
 
@@ -133,11 +122,11 @@ class SimulatedArm:
         angle = self.task.target
         target = 0.4 * np.array([np.cos(angle), np.sin(angle), 0.0])
         off = np.linalg.norm(sensors[:, :, :3] - target, axis=2)[:, ~moving].max(axis=1)
-        power = np.abs(sensors[:, :, 3] * sensors[:, :, 4:6].sum(axis=2))
+        power = np.abs(sensors[:, :, 3] * sensors[:, :, 4])
         objectives = np.column_stack([off, STEP * power[:, moving].sum(axis=1)])
         if not self.crosses:
             return objectives
-        return objectives, STEP * (sensors[:, :, 6:] > 0).sum(axis=1) - 1e-6
+        return objectives, STEP * (sensors[:, :, 5:] > 0).sum(axis=1) - 1e-6
 
     def _begin(self) -> Array:
         """The state at the start, the post on its way."""

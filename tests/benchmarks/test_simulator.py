@@ -20,17 +20,20 @@ import simulator  # noqa: E402
 from parts.simulated_arm import ANGLE, ARMS  # noqa: E402
 
 
-def test_the_arm_is_that_of_the_page():
+def test_the_arm_is_that_of_the_page(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (model,) = blocks("simulators", "xml")
+    Path("arm.xml").write_text(model)
     (page,) = (block for block in blocks("simulators", "python") if "mujoco" in block)
     names = {}
     exec(compile(page.partition("lower, upper")[0], "page", "exec"), names)
     free, _, _ = ARMS
     row = np.zeros(4)
-    (residual, energy), (touching,) = names["arm"](row)
-    assert touching < 0  # the plain cycloid misses the page's post, which ours has not
+    (residual, energy), (too_near,) = names["arm"](row)
+    assert too_near < 0  # the plain cycloid misses the page's post, which ours has not
     ((ours, of_ours),) = free(row[None])
-    assert ours == pytest.approx(residual, rel=1e-3)
-    assert of_ours == pytest.approx(energy, rel=0.06)  # the servo's damping is implicit here
+    assert ours == pytest.approx(residual, rel=1e-9)
+    assert of_ours == pytest.approx(energy, rel=1e-9)
 
 
 def test_an_arm_passes_the_post_before_it_or_after_it():
