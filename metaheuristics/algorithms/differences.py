@@ -5,8 +5,9 @@ differences; every candidate that they take counts. The first has no limit, from
 Those between zero and what the cheapest motion leaves fall, each from the motion of the next larger
 one (continuation), or are drawn, each from a random start.
 
-SLSQP ends on the limits of a move, and a hair beyond them. The verification sees peaks between the
-steps of a search, so a small share of every limit is kept free (`kept_free`).
+SLSQP ends on constraints, or beyond them by up to its tolerance, where a motion no longer counts.
+So it is asked to keep some room (`Differences.over`): of a move's limits a share, since the
+verification sees peaks between the steps of a search; of a user's own constraints the tolerance.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
+TOLERANCE = 1e-6
+"""Of SLSQP: at its end the violations may have this sum, and scaled energies this difference."""
 
 
 class _LostError(Exception):
@@ -45,6 +48,17 @@ class Differences:
         self._at: Array | None = None
         self._values: Array
         self._slopes: Array | None = None
+        self._least: Array | float = np.inf
+
+    def over(self, x: Array) -> Array:
+        """Violations of a candidate with room: SLSQP is asked to have none that is positive.
+
+        The room is a share of a move's limits, and `TOLERANCE` of a user's own constraints. Where
+        these are kept it is no more than any candidate has left, for a function may return 0 there.
+        """
+        violations = self.values(x)[self.objectives :]
+        left = np.where(violations > 0, np.inf, -self._least)
+        return violations + np.maximum(self._function.kept_free, np.minimum(TOLERANCE, left))
 
     def values(self, x: Array) -> Array:
         """Objectives and then violations of a candidate, as one row."""
@@ -71,6 +85,7 @@ class Differences:
     def _rows(self, candidates: Array) -> Array:
         objectives, violations = self._function(candidates)
         self.objectives = objectives.shape[1]
+        self._least = np.minimum(self._least, violations.min(axis=0))
         return np.hstack([objectives, violations])
 
 
@@ -162,7 +177,7 @@ def _least_energy(
         constraints.append(
             {
                 "type": "ineq",
-                "fun": lambda x: -differences.values(x)[first:] - function.kept_free,
+                "fun": lambda x: -differences.over(x),
                 "jac": lambda x: -differences.slopes(x)[first:],
             }
         )
@@ -173,5 +188,6 @@ def _least_energy(
         bounds=list(zip(function.lower, function.upper)),
         constraints=constraints,
         method="SLSQP",
+        options={"ftol": TOLERANCE},
     )
     return result.x

@@ -3,7 +3,8 @@
 Every few generations some candidates of the present front, at even distances along it, start the
 solver of `epsilon_front` for a few iterations: the least energy within the residual that each has.
 The one of least residual is led to rest, the cheapest to the least energy of all. What comes of it
-competes with all individuals, as offspring do.
+competes with all individuals, as offspring do. The solver ends on the limits of a move, and the
+verification sees peaks between the steps of a search: it keeps the share `kept_free` of each free.
 
 An evaluation with derivatives counts as many candidates as differences would have taken: one more
 than there are coefficients. Its processor time is that of the search.
@@ -25,6 +26,7 @@ from quietarm.metaheuristics.problems.recorded import RecordedFunction
 from quietarm.ocp.cost import COST
 from quietarm.ocp.front.tradeoff import Tradeoff
 from quietarm.ocp.planning.request import Request
+from quietarm.ocp.solvers.problem import Program
 from quietarm.ocp.solvers.solver import Solver
 from quietarm.ocp.solvers.sqp import Sqp
 
@@ -106,7 +108,7 @@ class MemeticMOEAD(ScaledMOEAD):
         limits[0] = 0.0
         limits[-1] = np.inf
         before = COST.copy()
-        problems = [self._tradeoff.problem(float(limit)) for limit in limits]
+        problems = [self._within(float(limit)) for limit in limits]
         solutions = self._tradeoff.solver.solve(problems, list(X[rows]), warm=True)
         spent = COST.since(before)
         of_gradient = 1 + X.shape[1]
@@ -115,6 +117,13 @@ class MemeticMOEAD(ScaledMOEAD):
         improved = np.array([solution.coefficients for solution in solutions])
         improved = improved[np.isfinite(improved).all(axis=1)]
         return np.clip(improved, self.lower, self.upper)
+
+    def _within(self, residual_limit: float) -> Program:
+        """The program at a residual limit, with room in the limits of the task."""
+        program = self._tradeoff.problem(residual_limit)
+        residual, *limits = program.limits
+        ratio = 1 / (1 - self._function.kept_free)
+        return program.asking(limits=(residual, *(limit.tightened(ratio) for limit in limits)))
 
 
 def spread(F: Array, count: int) -> Rows:

@@ -110,7 +110,7 @@ def plan_move(
     try:
         refuse_too_short(task, arrives_at_rest(task, request.residual_limit))
     except InfeasibleTaskError as error:
-        if len(task.plant.joint_names) > 1:  # a robot's offers take up to a minute
+        if task.plant.along_path:  # a robot's offers take up to a minute
             raise
         offers = offers_for(request.problem(), request.guesses, solver)
         raise InfeasibleTaskError(error.what, offers) from None

@@ -159,10 +159,12 @@ def test_a_plan_with_limits_by_joint_loads_to_an_equal_value(tmp_path):
     assert (again.task.torque_limit, hash(again.task)) == ({"joint_1": 400.0}, hash(task))
 
 
-def test_a_refusal_names_the_joint_that_takes_too_long():
+def test_a_refusal_names_the_joint_that_takes_too_long_and_the_limit_that_would_do():
     task = replace(GANTRY, speed_limit={"joint_1": 9.0, "joint_2": 0.1})
-    with pytest.raises(qa.InfeasibleTaskError, match="even a rigid joint_2 takes 3 s"):
-        qa.plan_move(task, qa.CycloidPolynomial(2), starts=1)  # 0.3 m at 0.1 m/s
+    with pytest.raises(qa.InfeasibleTaskError, match="even a rigid joint_2 takes 3 s") as refused:
+        qa.plan_move(task, qa.CycloidPolynomial(4), starts=1)  # 0.3 m at 0.1 m/s
+    (offered,) = re.findall(r"unchanged: speed limit ([\d.]+) m/s at joint_2$", str(refused.value))
+    assert 0.3 / 0.7 < float(offered) < 2 * 0.3 / 0.7  # of constant speed, of the plain cycloid
 
 
 @pytest.mark.parametrize("limit", [6.0, {"elbow": 6.0, "shoulder": 90.0}])

@@ -97,6 +97,23 @@ def test_constraints_hold_in_what_every_kind_of_method_finds(method):
     assert list(front.columns()) == ["way_mm", "work_J", "a_1", "a_2"]
 
 
+@pytest.mark.parametrize("least", [-np.inf, 0.0])  # a violation may be 0 wherever it is kept
+def test_slsqp_has_the_motions_that_lie_on_a_constraint(least):
+    """The least energy within a residual r is on the circle, at x_2 = sqrt(r): by Pythagoras."""
+
+    def on_a_disc(x):
+        return [x[1] ** 2, 4 - x[0] - x[1]], [max(x @ x - 1, least)]
+
+    front = qa.search(
+        on_a_disc, lower=[-2, -2], upper=2.0, constraints=["disc"], evaluations=150,
+        algorithm="slsqp",
+    )  # fmt: skip
+    residuals, energies = front.objective_values.T
+    best = 4 - np.sqrt(residuals) - np.sqrt(1 - residuals)
+    assert (energies < best + 1e-4).sum() > 5
+    assert (np.linalg.norm(front.coefficients, axis=1) <= 1).all()
+
+
 def test_one_violation_of_many_candidates_may_be_a_row_of_numbers():
     front = qa.search(
         lambda x: (many(x), x[:, 0] - 1),

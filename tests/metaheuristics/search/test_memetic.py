@@ -18,7 +18,7 @@ LIMITED = problem_of("single-link-30deg-0.8s-limits")
 SMALL = {"gradient_every": 2, "gradient_points": 4}
 
 
-def found(method, problem=PROBLEM, evaluations=600, **settings):
+def found(method, problem=PROBLEM, evaluations=600, seed=0, **settings):
     return search(
         problem.task,
         problem.profile,
@@ -27,6 +27,7 @@ def found(method, problem=PROBLEM, evaluations=600, **settings):
         population=1 if PRESETS[method].is_function else 20,
         evaluations=evaluations,
         settings=settings,
+        seed=seed,
     )
 
 
@@ -150,11 +151,9 @@ def test_a_candidate_counts_once_for_all_scenarios_of_an_uncertain_task():
     assert 0 < 7 * last.gradients / scenarios <= 600
 
 
-def test_slsqp_within_limits_keeps_its_motions():
-    """It ends on limits: without room the verification keeps no motion of this one."""
+@pytest.mark.parametrize(("method", "settings"), [("slsqp", {}), ("memetic", SMALL)])
+def test_what_ends_on_limits_keeps_its_motions(method, settings):
+    """Without room the verification keeps 6 motions of SLSQP and 5 of the memetic search."""
     problem = problem_of("linear-axis-m4-6-absolute-jerk-tight")
-    front = search(
-        problem.task, problem.profile, algorithm="slsqp", bound=problem.bound, evaluations=400,
-        seed=3,
-    )  # fmt: skip
-    assert len(front.points) > 5
+    front = found(method, problem, 400 if method == "slsqp" else 1000, seed=1, **settings)
+    assert len(front.points) > 10
