@@ -39,7 +39,7 @@ heavy that an arm hardly turns it away. The arm's tip is at 0.4 m."""
 SEED = 300
 """The ten arms are drawn from it."""
 COUNT = 5
-"""Drawn problems without a post, and with one; coefficients are 4 and 8 in turn."""
+"""Drawn problems without a post, and with one; coefficients are 4 and 8 in turn, five each."""
 TRIED, WAYS = 200, 10
 """Random candidates that look for ways past a drawn post, and how many pass it on each side."""
 LEAST, MOST = 2e-3, 0.2
@@ -216,10 +216,12 @@ ARMS = (
 def drawn() -> tuple[SimulatedArm, ...]:
     """Draw the family: arms without a post and with one, and four or eight coefficients in turn."""
     random = np.random.default_rng(SEED)
+    kinds = (("arm", False), ("arm-post", True))
     return tuple(
-        draw(random, f"{kind}-{(4, 8)[place % 2]}-{'abcde'[place]}", (4, 8)[place % 2], crosses)
-        for kind, crosses in (("arm", False), ("arm-post", True))
+        draw(random, f"{kind}-{terms}-{'abcde'[place]}", terms, crosses)
+        for first, (kind, crosses) in enumerate(kinds)
         for place in range(COUNT)
+        for terms in [(4, 8)[(first + place) % 2]]
     )
 
 
