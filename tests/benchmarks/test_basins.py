@@ -14,9 +14,9 @@ ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "docs" / "results")]
 
 import basins  # noqa: E402
-import recompute_basins  # noqa: E402
 from parts import outside_rivals, posts  # noqa: E402
 from parts.posts_gradient import is_free, least_energy  # noqa: E402
+from recomputing.basins import gaps_of, read  # noqa: E402
 
 
 def test_gaps_are_shares_of_the_area_that_the_best_points_of_all_runs_dominate(tmp_path):
@@ -28,7 +28,7 @@ def test_gaps_are_shares_of_the_area_that_the_best_points_of_all_runs_dominate(t
         "posts-1,es,200,0,1,1,3",
     ]
     (tmp_path / "basins.csv.xz").write_bytes(lzma.compress("\n".join(rows).encode()))
-    gaps, _ = recompute_basins.gaps_of(recompute_basins.read(tmp_path / "basins.csv.xz"))
+    gaps, _ = gaps_of(read(tmp_path / "basins.csv.xz"))
     corners = 1.1 * 0.1 + 0.1 * 1.0
     whole = corners + 0.5 * 0.5
     assert gaps["gradient", 0]["posts-1"] == pytest.approx([0.0])

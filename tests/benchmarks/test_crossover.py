@@ -40,6 +40,13 @@ import quietarm as qa  # noqa: E402
 from quietarm.views.pictures import grammar  # noqa: E402
 
 recompute = page.recompute_module(RESULTS)
+from recomputing.areas import area, best_known  # noqa: E402
+from recomputing.first_table import judged_rows  # noqa: E402
+from recomputing.gaps import Results  # noqa: E402
+from recomputing.published import differences, other_lines, wrong_lines  # noqa: E402
+from recomputing.runs import Problem, Run, read_runs  # noqa: E402
+from recomputing.significance import holm, least_p, signed_ranks  # noqa: E402
+
 DRAWN = read_moves(RESULTS / "moves.csv")
 
 
@@ -117,7 +124,7 @@ def test_first_seeds_choose_and_fresh_ones_judge():
 
     def runs(method, first, fresh, budget=10_000):
         return [
-            recompute.Run(
+            Run(
                 "centre", name, method, "points=50" if method == "epsilon" else "", budget, seed,
                 1.0, 1.0, points := np.array([[lacks, 0.0], [0.0, 1.0]]), points, np.empty((0, 3)),
             )
@@ -125,7 +132,7 @@ def test_first_seeds_choose_and_fresh_ones_judge():
             for seed, lacks in enumerate([first] * 3 + [fresh] * 2)
         ]  # fmt: skip
 
-    results = recompute.Results.__new__(recompute.Results)
+    results = Results.__new__(Results)
     results.runs = [
         *runs("epsilon", 0.0, 0.0, 0),
         *runs("gde3", 0.1, 0.4),
@@ -133,13 +140,13 @@ def test_first_seeds_choose_and_fresh_ones_judge():
         *runs("slsqp", 0.3, 0.3),
     ]
     results.gather()
-    (row,) = [row for row in recompute.judged_rows(results) if row["row"] == "smooth"]
+    (row,) = [row for row in judged_rows(results) if row["row"] == "smooth"]
     assert (row["search"], row["rival"]) == ("gde3", "slsqp")
     (judged,) = row["comparisons"]
     assert (judged["moves"], judged["seeds"]) == (10, 2)
     assert judged["by"]["between"]["better"] == judged["equal"] == 0
     # two comparisons in all, against SLSQP and the gradient, each with ten moves of one sign
-    assert judged["by"]["between"]["holm"] == pytest.approx(2 * recompute.least_p(10))
+    assert judged["by"]["between"]["holm"] == pytest.approx(2 * least_p(10))
     line = first_table.line_of(row, "-")
     assert (line["take"], line["better"]) == ("`slsqp`", "10/10")
 
@@ -242,19 +249,19 @@ def test_the_subset_of_three_objectives_has_so_many_that_none_dominates():
 def test_the_best_known_area_is_above_straight_lines():
     # a line from (0, 1) to (1, 0): half the unit square, and a margin of 0.1 on two sides
     points = np.column_stack([np.linspace(0, 1, 11), np.linspace(1, 0, 11)])
-    assert recompute.best_known(points) == pytest.approx(0.5 + 0.1 + 0.1 * 1.1)
+    assert best_known(points) == pytest.approx(0.5 + 0.1 + 0.1 * 1.1)
 
 
 def test_p_values_are_those_of_holm_and_of_all_signs_alike():
-    assert recompute.holm([0.01, np.nan, 0.04, 0.03]) == pytest.approx(
+    assert holm([0.01, np.nan, 0.04, 0.03]) == pytest.approx(
         [0.03, np.nan, 0.06, 0.06], nan_ok=True
     )
     # all ten differences of one sign: 2 of 2^10 arrangements
-    assert recompute.signed_ranks(np.arange(1.0, 11.0)) == pytest.approx(recompute.least_p(10))
+    assert signed_ranks(np.arange(1.0, 11.0)) == pytest.approx(least_p(10))
 
 
 def test_a_name_says_plant_move_coefficients_and_energy():
-    problem = recompute.Problem("arm-on-flexible-link-m3-16-motor-map")
+    problem = Problem("arm-on-flexible-link-m3-16-motor-map")
     assert (problem.plant, problem.move) == ("arm-on-flexible-link", "arm-on-flexible-link-m3")
     assert (problem.terms, problem.kind) == (16, "motor-map")
 
@@ -339,9 +346,9 @@ def test_pictures_say_what_is_seen_in_colours_of_the_grammar():
 
 def test_the_pages_are_those_of_the_templates_and_a_wrong_digit_is_named():
     figures = json.loads((RESULTS / "figures.json").read_text())
-    assert recompute.wrong_lines(RESULTS, figures) == []
+    assert wrong_lines(RESULTS, figures) == []
     text = (RESULTS / "report.md").read_text()
-    line = recompute.other_lines("report.md", with_another_digit(text, "| a model that"), text)
+    line = other_lines("report.md", with_another_digit(text, "| a model that"), text)
     assert re.fullmatch(r"report.md, line \d+: \S+ is printed, and the files give \S+", *line)
 
 
@@ -383,7 +390,7 @@ def test_runtime_profiles_rise_and_end_as_the_table_says():
 def test_the_figures_are_those_of_the_files():
     figures = json.loads(json.dumps(recompute.compute(RESULTS)))
     published = json.loads((RESULTS / "figures.json").read_text())
-    assert recompute.differences(published, figures) == []
+    assert differences(published, figures) == []
 
 
 @pytest.mark.slow
@@ -398,8 +405,8 @@ def test_a_small_crossing_from_end_to_end(tmp_path, capsys):
     assert run.run_jobs_of(jobs, tmp_path / "runs", results) == 0
     shutil.rmtree(tmp_path / "runs")
     assert run.done_keys(results) == {job.key for job in jobs}
-    by_search, by_gradient = sorted(recompute.read_runs(results), key=lambda run: -run.budget)
+    by_search, by_gradient = sorted(read_runs(results), key=lambda run: -run.budget)
     assert by_search.marks[-1, 0] == 300
-    assert recompute.area(by_gradient.between) > recompute.area(by_search.points) > 0
+    assert area(by_gradient.between) > area(by_search.points) > 0
     # with motions between, ten points are a curve
-    assert recompute.area(by_gradient.between) > recompute.area(by_gradient.points)
+    assert area(by_gradient.between) > area(by_gradient.points)

@@ -125,8 +125,14 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         begin=BEGIN,
         end=END,
         machine=f"Python {platform.python_version()}",
-        megabytes=sum(path.stat().st_size for path in results.rglob("*") if path.is_file()) / 1e6,
+        megabytes=megabytes_of(results),
     )
+
+
+def megabytes_of(results: Path) -> float:
+    """Size of what is published; Python's own copies of its script are not."""
+    files = [path for path in results.rglob("*") if path.is_file()]
+    return sum(path.stat().st_size for path in files if "__pycache__" not in path.parts) / 1e6
 
 
 def takes_slopes(method: str) -> bool:

@@ -1,0 +1,19 @@
+"""What was run: coefficients, budgets, kinds of energy, limits, and who is held against whom."""
+
+from __future__ import annotations
+
+TERMS = (2, 4, 6, 10, 16, 24)
+CENTRE = 6
+BUDGETS = (1_000, 10_000, 100_000)
+KINDS = ("absolute", "copper", "stages", "motor-map", "integer")
+LIMITS = ("torque-tight", "torque-loose", "jerk-tight", "jerk-loose")
+CONTROL = "epsilon"
+CONTROL_SETTINGS = "points=50"
+DIFFERENCES = "slsqp"
+OF_MAP = ("centre", "crossing", "large")
+"""Tables that have the runs of the map."""
+
+
+def takes_slopes(label: str) -> bool:
+    """Whether a method of candidates takes the gradient's steps, or differences."""
+    return any(word in label for word in ("memetic", "+polish", DIFFERENCES))
