@@ -13,6 +13,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
+import casadi as ca
 import mujoco
 import numpy as np
 from mujoco import rollout
@@ -173,13 +174,14 @@ class SimulatedArm:
     def __call__(self, candidates: Array) -> Any:
         """Objectives of many candidates, and their violations."""
         rows = np.atleast_2d(candidates)
-        paths = [qa.motion_of(self.task, self.profile, row, step=STEP, after=AFTER) for row in rows]
-        controls = np.array([np.column_stack([path[1], path[2]]) for path in paths])
+        time, fraction, sent = self._path
+        controls = np.array([sent(row, fraction).full().T for row in rows])
+        controls[:, time > self.duration, 1] = 0.0
         begin = self._begin()
         _, sensors = rollout.rollout(
             self.model, mujoco.MjData(self.model), np.tile(begin, (len(rows), 1)), controls
         )
-        moving = np.array(paths[0][0]) < self.duration
+        moving = time < self.duration
         target = 2 * LENGTH * np.array([np.cos(self.target), np.sin(self.target), 0.0])
         off = np.linalg.norm(sensors[:, :, :3] - target, axis=2)[:, ~moving].max(axis=1)
         power = np.abs(sensors[:, :, 3] * sensors[:, :, 4:6].sum(axis=2))
@@ -187,6 +189,24 @@ class SimulatedArm:
         if not self.post:
             return objectives
         return objectives, STEP * (sensors[:, :, 6:] > 0).sum(axis=1) - 1e-6
+
+    @cached_property
+    def _path(self) -> tuple[Array, Array, ca.Function]:
+        """Times and fractions of the move, and the path's angle and speed there; built once.
+
+        The samples are those of `quietarm.motion_of`.
+        """
+        time, *_ = qa.motion_of(
+            self.task, self.profile, np.zeros(self.terms), step=STEP, after=AFTER
+        )
+        coefficients, fraction = ca.SX.sym("a", self.terms), ca.SX.sym("fraction")
+        motion = self.profile.motion(
+            tuple(ca.vertsplit(coefficients)), fraction, 0.0, self.target, self.duration
+        )
+        sent = ca.Function(
+            "sent", [coefficients, fraction], [ca.vertcat(motion.angle, motion.speed)]
+        )
+        return time, np.clip(time / self.duration, 0.0, 1.0)[None], sent
 
     def _begin(self) -> Array:
         """The state at the start, the post on its way."""
