@@ -118,9 +118,7 @@ def table(runs: Sequence[Run], gaps: Gaps, candidates: int) -> list[dict[str, An
     by_method = {
         method: medians(gaps, method, candidates, range(LONG_SEED)) for method in seconds_of
     }
-    typical = {
-        method: float(np.median([*values.values()])) for method, values in by_method.items()
-    }
+    typical = {method: float(np.median([*values.values()])) for method, values in by_method.items()}
     order = sorted(typical, key=lambda method: typical[method])
     rival = next((method for method in order if is_slsqp(method)), "")
     rows = [
@@ -210,7 +208,8 @@ def in_block(values: Mapping[str, float], block: str) -> dict[str, float]:
 
 def of_problems(gaps: Gaps, row: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return each problem's gaps over all seeds: of the row's search and rival, and the best."""
-    methods = sorted({key.method for keys in gaps.values() for key in keys if key.candidates == FEW})
+    keys = [key for of_problem in gaps.values() for key in of_problem]
+    methods = sorted({key.method for key in keys if key.candidates == FEW})
     every = {method: medians(gaps, method, FEW, range(LONG_SEED)) for method in methods}
     rows = list[dict[str, Any]]()
     for problem in sorted(gaps):
