@@ -42,12 +42,13 @@ from recomputing.one_axis import (
     objective_figures,
 )
 from recomputing.published import PAGES, differences, wrong_lines
+from recomputing.runs import read_runs
 from recomputing.tuning import tuned
 
 
 def compute(folder: Path) -> dict[str, Any]:
     """All figures."""
-    results = Results(folder)
+    results = Results(read_runs(folder))
     centre = results.problems()
     in_crossing = searches_in(results, ("crossing",), 10_000, results.problems(4), 5)
     crossed = [label for label, _ in in_crossing]
@@ -60,7 +61,7 @@ def compute(folder: Path) -> dict[str, Any]:
     ]
     large = searches_in(results, ("large",), 100_000, centre, 3)
     return {
-        **efforts(results),
+        **efforts(results, folder),
         **map_figures(results, crossed),
         **objective_figures(results),
         "energy_by_terms": energy_by_terms(results, crossed),
@@ -70,14 +71,14 @@ def compute(folder: Path) -> dict[str, Any]:
         "paper": both_measures(results, centre, paper),
         "large": both_measures(results, centre, large),
         "million": million(results),
-        "tuned": tuned(results),
+        "tuned": tuned(results, folder),
         "kinds": kind_figures(results),
         "noise": noise_figures(results),
         "limits": limit_figures(results),
         "few": few_figures(results),
         "further": further_figures(results),
         "families": energy_of_families(results),
-        "parallel": parallel_figures(results),
+        "parallel": parallel_figures(results, folder),
         "judged": judged_rows(results),
         "indicators": by_indicator(results, crossed),
         "differences": against_differences(results, crossed),
@@ -87,7 +88,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "black_box": black_box_figures(folder),
         "arms": arm_figures(folder),
         "basins": basins_figures(folder),
-        "prediction": prediction_figures(results, crossed),
+        "prediction": prediction_figures(results, folder, crossed),
     }
 
 

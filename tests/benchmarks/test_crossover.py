@@ -132,15 +132,13 @@ def test_first_seeds_choose_and_fresh_ones_judge():
             for seed, lacks in enumerate([first] * 3 + [fresh] * 2)
         ]  # fmt: skip
 
-    results = Results.__new__(Results)
-    results.runs = [
+    all_runs = [
         *runs("epsilon", 0.0, 0.0, 0),
         *runs("gde3", 0.1, 0.4),
         *runs("nsga2", 0.2, 0.2),
         *runs("slsqp", 0.3, 0.3),
     ]
-    results.gather()
-    (row,) = [row for row in judged_rows(results) if row["row"] == "smooth"]
+    (row,) = [row for row in judged_rows(Results(all_runs)) if row["row"] == "smooth"]
     assert (row["search"], row["rival"]) == ("gde3", "slsqp")
     (judged,) = row["comparisons"]
     assert (judged["moves"], judged["seeds"]) == (10, 2)

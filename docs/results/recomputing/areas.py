@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import moocore
 import numpy as np
 
@@ -16,6 +18,18 @@ def area(points: Array) -> float:
     if not len(points):
         return 0.0
     return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1]))
+
+
+def gaps_to_best(fronts: Sequence[Array]) -> list[float]:
+    """What every front lacks of the area of the best points of all of them [%].
+
+    The scale goes from the least to the largest values of those points.
+    """
+    best = moocore.filter_dominated(np.vstack(fronts))
+    least = best.min(axis=0)
+    extent = np.ptp(best, axis=0)
+    whole = area((best - least) / extent)
+    return [100 * (1 - area((points - least) / extent) / whole) for points in fronts]
 
 
 def best_known(points: Array) -> float:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .experiment import CONTROL, CONTROL_SETTINGS, TERMS
-from .gaps import Results
+from .experiment import GRADIENT_FRONT, TERMS
+from .gaps import Results, median_energy
 from .runs import Problem
 
 
@@ -18,15 +18,13 @@ def energy_by_terms(results: Results, crossed: Sequence[str]) -> dict[str, list[
     """
     most = {Problem(name).move: name for name in results.problems(TERMS[-1])}
     least = {move: runs[0].energy for move, name in most.items() if (runs := results.control(name))}
-    control = f"{CONTROL} {CONTROL_SETTINGS}"
     figures = {}
-    for method in (control, *crossed):
-        budget = 0 if method == control else 10_000
+    for method in (GRADIENT_FRONT, *crossed):
+        budget = 0 if method == GRADIENT_FRONT else 10_000
         figures[method] = []
         for terms in TERMS:
             ratios = [
-                np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
-                / least[Problem(name).move]
+                median_energy(runs) / least[Problem(name).move]
                 for name in results.problems(terms)
                 if Problem(name).move in least and (runs := results.of(method, budget, name))
             ]
@@ -48,11 +46,7 @@ def gain_of_coefficients(
         for terms in (fewer, more):
             runs_of = {name: results.of(method, 10_000, name) for name in results.problems(terms)}
             energies[terms] = {
-                Problem(name).move: float(
-                    np.median([run.energy if np.isfinite(run.energy) else np.inf for run in runs])
-                )
-                for name, runs in runs_of.items()
-                if runs
+                Problem(name).move: median_energy(runs) for name, runs in runs_of.items() if runs
             }
         moves = energies[fewer].keys() & energies[more].keys()
         figures[method] = {

@@ -8,12 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from .experiment import takes_slopes
 from .gaps import MEASURES, Results
 from .runs import Array, Problem, Run
-from .significance import holm, interval, signed_ranks
+from .significance import add_holm, interval, median_or_nan, signed_ranks
 
+Search = tuple[str, int]
+"""A method with its settings, and its budget."""
 Rival = Callable[[str, float], list[Run]]
 """Runs on a problem that a search is held against, by the processor time that it took."""
+LEAST_GAP = 1e-3
+"""Gaps below it [%] count as this in a ratio: what the files' digits can tell."""
 
 
 def by_label(results: Results, label: str, budget: int) -> Rival:
@@ -24,7 +29,7 @@ def by_label(results: Results, label: str, budget: int) -> Rival:
 def compare(
     results: Results,
     problems: Sequence[str],
-    searches: Sequence[tuple[str, int]],
+    searches: Sequence[Search],
     measure: str,
     rival: Rival | None = None,
     with_intervals: bool = True,
@@ -41,79 +46,107 @@ def compare(
         for name in problems
         if results.control(name) and all(results.of(*search, name) for search in searches)
     ]
-    plants = [Problem(name).plant for name in problems]
-    rows = list[dict[str, Any]]()
-    for label, budget in searches:
-        runs = [results.of(label, budget, name) for name in problems]
-        lacks = np.array([results.median(r, results.gap, measure) for r in runs])
-        excess = np.array([results.median(r, results.excess, measure) for r in runs])
-        seconds = np.array([np.median([run.seconds for run in r]) for r in runs])
-        controls = [against(name, spent) for name, spent in zip(problems, seconds, strict=True)]
-        known = np.array([bool(control) for control in controls], dtype=bool)
-        theirs = np.array(
-            [results.median(control, results.gap, measure) for control in controls if control]
-        )
-        row: dict[str, Any] = {
-            "method": label,
-            "budget": budget,
-            "moves": len(problems),
-            "seeds": min((len(r) for r in runs), default=0),
-            "missing": _median(lacks),
-            "control": _median(theirs),
-            "control_seconds": _median(
-                np.array([np.median([r.seconds for r in runs]) for runs in controls if runs])
-            ),
-            "no_control": int((~known).sum()),
-            "excess": _median(excess),
-            "seconds": _median(seconds),
-        }
-        if known.any():
-            floor = 1e-3  # per cent: what the files' digits can tell
-            lacks = lacks[known]
-            of_known = [plant for plant, has in zip(plants, known, strict=True) if has]
-            ratios = np.log10(np.maximum(lacks, floor) / np.maximum(theirs, floor))
-            by_plant = [np.median(ratios[np.array(of_known) == plant]) for plant in set(of_known)]
-            row |= {
-                "p": signed_ranks(lacks - theirs),
-                "log_ratio": float(np.median(ratios)),
-                "interval": interval(ratios, of_known) if with_intervals else None,
-                "moves_nearer": int((lacks < theirs).sum()),
-                "plants_nearer": int(sum(value < 0 for value in by_plant)),
-                "plants": len(by_plant),
-            }
-        rows.append(row)
-    for row, p in zip(rows, holm([row.get("p", np.nan) for row in rows]), strict=True):
-        row["holm"] = p
+    rows = [
+        compared(results, problems, search, measure, against, with_intervals) for search in searches
+    ]
+    add_holm(rows)
     return rows
 
 
-def _median(values: Array) -> float:
-    return float(np.median(values)) if len(values) else float("nan")
+def compared(
+    results: Results,
+    problems: Sequence[str],
+    search: Search,
+    measure: str,
+    rival: Rival,
+    with_intervals: bool,
+) -> dict[str, Any]:
+    """The row of a search, without Holm's p."""
+    runs = [results.of(*search, name) for name in problems]
+    lacks = results.median_gaps(runs, measure)
+    excess = [np.median([results.excess(run) for run in of_problem]) for of_problem in runs]
+    seconds = [float(np.median([run.seconds for run in of_problem])) for of_problem in runs]
+    controls = [rival(name, spent) for name, spent in zip(problems, seconds, strict=True)]
+    known = np.array([bool(control) for control in controls], dtype=bool)
+    fronts = [control for control in controls if control]
+    theirs = results.median_gaps(fronts, measure)
+    label, budget = search
+    row: dict[str, Any] = {
+        "method": label,
+        "budget": budget,
+        "moves": len(problems),
+        "seeds": min(map(len, runs), default=0),
+        "missing": median_or_nan(lacks),
+        "control": median_or_nan(theirs),
+        "control_seconds": median_or_nan(
+            np.array([np.median([run.seconds for run in front]) for front in fronts])
+        ),
+        "no_control": int((~known).sum()),
+        "excess": median_or_nan(np.array(excess)),
+        "seconds": median_or_nan(np.array(seconds)),
+    }
+    if fronts:
+        plants = [Problem(name).plant for name, has in zip(problems, known, strict=True) if has]
+        row |= differences_of(lacks[known], theirs, plants, with_intervals)
+    return row
+
+
+def differences_of(
+    lacks: Array, theirs: Array, plants: Sequence[str], with_intervals: bool
+) -> dict[str, Any]:
+    """What a search lacks on moves of plants, beside what its rival lacks there."""
+    ratios = np.log10(np.maximum(lacks, LEAST_GAP) / np.maximum(theirs, LEAST_GAP))
+    by_plant = medians_by_plant(ratios, plants)
+    return {
+        "p": signed_ranks(lacks - theirs),
+        "log_ratio": float(np.median(ratios)),
+        "interval": interval(ratios, plants) if with_intervals else None,
+        "moves_nearer": int((lacks < theirs).sum()),
+        "plants_nearer": int(sum(value < 0 for value in by_plant)),
+        "plants": len(by_plant),
+    }
+
+
+def medians_by_plant(values: Array, plants: Sequence[str]) -> list[float]:
+    """The median over the moves of each plant."""
+    of_plants = np.array(plants)
+    return [float(np.median(values[of_plants == plant])) for plant in sorted(set(plants))]
 
 
 def both_measures(
-    results: Results, problems: Sequence[str], searches: Sequence[tuple[str, int]]
+    results: Results, problems: Sequence[str], searches: Sequence[Search]
 ) -> dict[str, list[dict[str, Any]]]:
     """Comparisons by either measure."""
     return {measure: compare(results, problems, searches, measure) for measure in MEASURES}
 
 
-def searches_in(results: Results, axes: Sequence[str], budget: int, problems: Sequence[str],
-                least: int) -> list[tuple[str, int]]:  # fmt: skip
+def searches_in(
+    results: Results, axes: Sequence[str], budget: int, problems: Sequence[str], least: int
+) -> list[Search]:
     """Searches with runs of a budget on at least so many of the problems."""
     names = set(problems)
-    count = defaultdict[str, set[str]](set)
+    problems_of = defaultdict[str, set[str]](set)
     for run in results.runs:
         if run.axis in axes and run.budget == budget and run.problem in names:
-            count[run.label].add(run.problem)
-    return sorted((label, budget) for label, known in count.items() if len(known) >= least)
+            problems_of[run.label].add(run.problem)
+    return sorted((label, budget) for label, known in problems_of.items() if len(known) >= least)
 
 
-def gradient_labels(results: Results, problems: Sequence[str]) -> list[tuple[str, int]]:
+def count_with_runs(results: Results, search: Search, problems: Sequence[str]) -> int:
+    """On how many of the problems a search has runs, of whichever table."""
+    return sum(bool(results.of(*search, name)) for name in problems)
+
+
+def of_values(searches: Sequence[Search]) -> list[Search]:
+    """Those of the methods that see values alone."""
+    return [(label, budget) for label, budget in searches if not takes_slopes(label)]
+
+
+def gradient_labels(results: Results, problems: Sequence[str]) -> list[Search]:
     """Methods without a budget that were run on most of the problems."""
     labels = {run.label for run in results.runs if run.axis == "centre" and not run.budget}
     return [
         (label, 0)
         for label in sorted(labels)
-        if 2 * sum(bool(results.of(label, 0, name)) for name in problems) > len(problems)
+        if 2 * count_with_runs(results, (label, 0), problems) > len(problems)
     ]

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import csv
 from collections import defaultdict
+from pathlib import Path
 from typing import Any
 
 from .gaps import Results
-from .runs import Run
+from .runs import Run, rows_of
 
 
-def efforts(results: Results) -> dict[str, Any]:
+def efforts(results: Results, folder: Path) -> dict[str, Any]:
     """Runs, hours and seeds by axis, beside the runs of the plan."""
-    with (results.folder / "plan.csv").open(newline="") as file:
-        planned = list(csv.DictReader(file))
+    planned = rows_of(folder / "plan.csv")
     runs = defaultdict[str, list[Run]](list)
     for run in results.runs:
         runs[run.axis].append(run)

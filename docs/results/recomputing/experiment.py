@@ -8,8 +8,11 @@ BUDGETS = (1_000, 10_000, 100_000)
 KINDS = ("absolute", "copper", "stages", "motor-map", "integer")
 LIMITS = ("torque-tight", "torque-loose", "jerk-tight", "jerk-loose")
 CONTROL = "epsilon"
-CONTROL_SETTINGS = "points=50"
+"""The gradient's front, against which all others are held."""
+GRADIENT_FRONT = f"{CONTROL} points=50"
+"""The same with the settings by which it stands in the map."""
 DIFFERENCES = "slsqp"
+"""What takes differences of values in place of the gradient."""
 OF_MAP = ("centre", "crossing", "large")
 """Tables that have the runs of the map."""
 

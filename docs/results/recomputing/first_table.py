@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from .comparing import searches_in
+from .comparing import medians_by_plant, searches_in
 from .experiment import CONTROL, DIFFERENCES, LIMITS, takes_slopes
 from .gaps import INDICATORS, Results
-from .runs import Array, Problem, Run
-from .significance import holm, interval, signed_ranks
+from .runs import Problem, Run
+from .significance import add_holm, interval, signed_ranks
 
 FIRST_SEEDS = 3
 EQUAL = 0.5
@@ -68,15 +68,14 @@ def judged_rows(results: Results) -> list[dict[str, Any]]:
     ]
     of_table = [comparison["by"][row["measure"]] for row, comparison in comparisons]
     for tests in (*of_indicators, of_table):
-        for test, p in zip(tests, holm([test["p"] for test in tests]), strict=True):
-            test["holm"] = p
+        add_holm(tests)
     return rows
 
 
 def judged(results: Results, row: Row) -> dict[str, Any]:
     """A row with its search, the rival's settings and a comparison for each kind of problem."""
-    problems_of = {kind: results.problems(kind=kind) for kind in row.kinds}
-    every = [name for problems in problems_of.values() for name in problems]
+    by_kind = problems_of(results, row)
+    every = [name for problems in by_kind.values() for name in problems]
     labels = [
         label
         for label, _ in searches_in(results, row.axes, row.budget, every, 5)
@@ -86,8 +85,8 @@ def judged(results: Results, row: Row) -> dict[str, Any]:
     ]
     searches = [label for label in labels if not takes_slopes(label)]
     steps = [label for label in labels if label.partition(" ")[0] == DIFFERENCES]
-    search = chosen_on_first(results, row, searches, problems_of)
-    rival = CONTROL if row.rival == CONTROL else chosen_on_first(results, row, steps, problems_of)
+    search = chosen_on_first(results, row, searches, by_kind)
+    rival = CONTROL if row.rival == CONTROL else chosen_on_first(results, row, steps, by_kind)
     return {
         "row": row.name,
         "budget": row.budget,
@@ -96,10 +95,15 @@ def judged(results: Results, row: Row) -> dict[str, Any]:
         "rival": rival,
         "comparisons": [
             comparison
-            for kind, problems in problems_of.items()
+            for kind, problems in by_kind.items()
             if (comparison := judged_on(results, row, (search, rival), kind, problems))
         ],
     }
+
+
+def problems_of(results: Results, row: Row) -> dict[str, list[str]]:
+    """The problems of a row, by kind."""
+    return {kind: results.problems(kind=kind) for kind in row.kinds}
 
 
 def seeds_of(results: Results, row: Row, label: str, name: str, fresh: bool) -> list[Run]:
@@ -109,7 +113,7 @@ def seeds_of(results: Results, row: Row, label: str, name: str, fresh: bool) -> 
 
 
 def chosen_on_first(
-    results: Results, row: Row, labels: Sequence[str], problems_of: Mapping[str, Sequence[str]]
+    results: Results, row: Row, labels: Sequence[str], by_kind: Mapping[str, Sequence[str]]
 ) -> str:
     """The method of the least median gap on the first seeds, on problems that all have.
 
@@ -126,16 +130,15 @@ def chosen_on_first(
     of_all = [
         label
         for label in labels
-        if all(is_on_most(label, problems) for problems in problems_of.values())
+        if all(is_on_most(label, problems) for problems in by_kind.values())
     ]
     worst = dict[str, float]()
     for label in of_all:
         medians = list[float]()
-        for problems in problems_of.values():
+        for problems in by_kind.values():
             shared = set.intersection(*(known(other, problems) for other in of_all))
             runs = [seeds_of(results, row, label, name, False) for name in sorted(shared)]
-            gaps = [results.median(of_name, results.gap, row.measure) for of_name in runs]
-            medians.append(float(np.median(gaps)))
+            medians.append(float(np.median(results.median_gaps(runs, row.measure))))
         worst[label] = max(medians)
     return min(worst, key=lambda label: worst[label], default="")
 
@@ -158,35 +161,44 @@ def judged_on(
     seeds = [len(runs) for runs in ours.values()]
     if rival != CONTROL:
         seeds = [min(pair) for pair in zip(seeds, map(len, theirs.values()), strict=True)]
-    controls = {name: results.control(name) for name in ours}
+    gaps = results.median_gaps(ours.values(), row.measure)
+    gaps_of_rival = results.median_gaps(theirs.values(), row.measure)
+    gaps_of_gradient = results.median_gaps(map(results.control, ours), row.measure)
+    difference = gaps - gaps_of_rival
     plants = [Problem(name).plant for name in ours]
-
-    def gaps(runs_of: Mapping[str, list[Run]], indicator: str) -> Array:
-        runs = runs_of.values()
-        return np.array([results.median(of_name, results.gap, indicator) for of_name in runs])
-
-    by = dict[str, dict[str, Any]]()
-    for indicator in INDICATORS:
-        if indicator == "between" and row.measure == "points":
-            continue  # of three and four objectives there are no motions between
-        difference = gaps(ours, indicator) - gaps(theirs, indicator)
-        by[indicator] = {
-            "better": int((difference < 0).sum()),
-            "difference": float(np.median(difference)),
-            "p": signed_ranks(difference),
-        }
-    difference = gaps(ours, row.measure) - gaps(theirs, row.measure)
-    by_plant = [np.median(difference[np.array(plants) == plant]) for plant in sorted(set(plants))]
+    by_plant = medians_by_plant(difference, plants)
+    indicators = list(INDICATORS)
+    if row.measure == "points":  # of three and four objectives there are no motions between
+        indicators.remove("between")
     return {
         "kind": kind.removeprefix("absolute").removeprefix("-"),
         "moves": len(ours),
         "seeds": min(seeds),
-        "missing": float(np.median(gaps(ours, row.measure))),
-        "control": float(np.median(gaps(theirs, row.measure))),
-        "gradient": float(np.median(gaps(controls, row.measure))),
+        "missing": float(np.median(gaps)),
+        "control": float(np.median(gaps_of_rival)),
+        "gradient": float(np.median(gaps_of_gradient)),
         "equal": int((np.abs(difference) < EQUAL).sum()),
         "interval": interval(difference, plants),
         "plants": len(by_plant),
         "plants_better": int(sum(value < 0 for value in by_plant)),
-        "by": by,
+        "by": {
+            indicator: by_one_indicator(results, ours, theirs, indicator)
+            for indicator in indicators
+        },
+    }
+
+
+def by_one_indicator(
+    results: Results,
+    ours: Mapping[str, list[Run]],
+    theirs: Mapping[str, list[Run]],
+    indicator: str,
+) -> dict[str, Any]:
+    """A search and its rival on the same problems, by an indicator, without Holm's p."""
+    gaps = results.median_gaps(ours.values(), indicator)
+    difference = gaps - results.median_gaps(theirs.values(), indicator)
+    return {
+        "better": int((difference < 0).sum()),
+        "difference": float(np.median(difference)),
+        "p": signed_ranks(difference),
     }

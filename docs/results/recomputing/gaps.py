@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 
 import moocore
 import numpy as np
 
 from .areas import area, best_known
-from .experiment import CENTRE, CONTROL, CONTROL_SETTINGS
-from .runs import Array, Problem, Run, read_runs
+from .experiment import CENTRE, CONTROL, GRADIENT_FRONT
+from .runs import Array, Problem, Run
 
 MEASURES = ("points", "between")
 """Hypervolume of 50 points; of the 100 best with motions between them."""
@@ -22,16 +21,17 @@ NO_SUCH_MOTION = 1e3
 """Excess of energy [%] that counts for a front without a motion within 1 mm."""
 
 
+def median_energy(runs: Iterable[Run]) -> float:
+    """Energy within 1 mm, median over seeds; infinite for a run without such a motion."""
+    energies = [run.energy if np.isfinite(run.energy) else np.inf for run in runs]
+    return float(np.median(energies))
+
+
 class Results:
     """Runs, and what each lacks of the best that is known of its problem."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.runs = read_runs(folder)
-        self.gather()
-
-    def gather(self) -> None:
-        """Bring the points of all runs of a problem together: what the gaps are measured by."""
+    def __init__(self, runs: Sequence[Run]) -> None:
+        self.runs = runs
         points_of = defaultdict[str, list[Array]](list)
         energies = defaultdict[str, list[float]](list)
         for run in self.runs:
@@ -45,17 +45,12 @@ class Results:
             name: min(filter(np.isfinite, values), default=np.inf)
             for name, values in energies.items()
         }
-        self._gaps = dict[tuple[int, str], float]()
-        self._table = defaultdict[tuple[str, int, str], list[Run]](list)
+        self.known_gaps = dict[tuple[int, str], float]()
+        self.runs_of = defaultdict[tuple[str, int, str], list[Run]](list)
         for run in self.runs:
-            self._table[run.label, run.budget, run.problem].append(run)
+            self.runs_of[run.label, run.budget, run.problem].append(run)
 
-    def missing(self, run: Run, measure: str) -> float:
-        """Per cent of the best known area."""
-        points = run.points if measure == "points" else run.between
-        return 100 * (1 - area(points) / self.whole[run.problem])
-
-    def excess(self, run: Run, measure: str = "") -> float:
+    def excess(self, run: Run) -> float:
         """Energy within 1 mm over the least known [%]; infinite where there is no such motion."""
         if not np.isfinite(run.energy):
             return np.inf
@@ -72,13 +67,15 @@ class Results:
         Of the best known hypervolume, of the problem's scale (IGD+, epsilon), or of the energy.
         """
         key = id(run), indicator
-        if key not in self._gaps:
-            self._gaps[key] = self._gap(run, indicator)
-        return self._gaps[key]
+        if key not in self.known_gaps:
+            self.known_gaps[key] = self.gap_anew(run, indicator)
+        return self.known_gaps[key]
 
-    def _gap(self, run: Run, indicator: str) -> float:
+    def gap_anew(self, run: Run, indicator: str) -> float:
+        """A gap as `gap` keeps it."""
         if indicator in MEASURES:
-            return self.missing(run, indicator)
+            points = run.points if indicator == "points" else run.between
+            return 100 * (1 - area(points) / self.whole[run.problem])
         if indicator == "energy":
             return min(self.excess(run), NO_SUCH_MOTION)
         if not len(run.points):
@@ -88,19 +85,20 @@ class Results:
 
     def of(self, label: str, budget: int, problem: str) -> list[Run]:
         """The runs of a method with its settings on a problem."""
-        return self._table.get((label, budget, problem), [])
+        return self.runs_of.get((label, budget, problem), [])
 
-    def median(
-        self, runs: Iterable[Run], value: Callable[[Run, str], float], measure: str
-    ) -> float:
-        """Over seeds; a method that repeats itself counts once as it is."""
-        return float(np.median([value(run, measure) for run in runs]))
+    def median_gap(self, runs: Iterable[Run], indicator: str) -> float:
+        """The median over seeds; a method that repeats itself counts once as it is."""
+        return float(np.median([self.gap(run, indicator) for run in runs]))
+
+    def median_gaps(self, of_problems: Iterable[Sequence[Run]], indicator: str) -> Array:
+        """Medians over seeds, of the runs of each problem."""
+        return np.array([self.median_gap(runs, indicator) for runs in of_problems])
 
     def control(self, problem: str) -> list[Run]:
         """The gradient's front of 50 points; of 20 where the energy jumps, of 200 with peaks."""
         several = Problem(problem).kind.endswith("objectives")
-        settings = "points=200" if several else CONTROL_SETTINGS
-        runs = self.of(f"{CONTROL} {settings}", 0, problem)
+        runs = self.of(f"{CONTROL} points=200" if several else GRADIENT_FRONT, 0, problem)
         return runs or self.of(f"{CONTROL} points=20", 0, problem)
 
     def control_within(self, problem: str, seconds: float) -> list[Run]:

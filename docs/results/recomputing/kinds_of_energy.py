@@ -8,24 +8,23 @@ from typing import Any
 
 import numpy as np
 
-from .comparing import by_label, compare
-from .experiment import DIFFERENCES, KINDS, takes_slopes
+from .comparing import Search, by_label, compare, count_with_runs, of_values
+from .experiment import DIFFERENCES, KINDS
 from .gaps import Results
 from .runs import Problem
+
+BUDGET = 10_000
+MOST = 8
+"""Problems of a kind without which a method is left out."""
 
 
 def kind_figures(results: Results) -> dict[str, Any]:
     """By the kind of energy, on the moves that all kinds have, with motions between."""
     figures = {}
-    moves = moves_with_other_kinds(results)
+    labels = sorted({run.label for run in results.runs if run.axis == "energy" and run.budget})
     for kind in KINDS:
-        problems = [name for name in results.problems(kind=kind) if Problem(name).move in moves]
-        methods = {run.label for run in results.runs if run.axis == "energy" and run.budget}
-        searches = [
-            (label, 10_000)
-            for label in sorted(methods)
-            if sum(bool(results.of(label, 10_000, name)) for name in problems) >= 8
-        ]
+        problems = problems_of_kind(results, kind)
+        searches = searches_on_most(results, labels, problems)
         figures[kind] = compare(results, problems, searches, "between") if problems else []
     return figures
 
@@ -36,42 +35,35 @@ def against_differences(results: Results, crossed: Sequence[str]) -> dict[str, A
     And at the centre against differences whose starts are random; and what differences lack where
     an integer is among the variables, by seed.
     """
-    budget = 10_000
-    moves = moves_with_other_kinds(results)
+    rival = by_label(results, DIFFERENCES, BUDGET)
     by_kind = {}
     for kind in KINDS:
-        problems = [name for name in results.problems(kind=kind) if Problem(name).move in moves]
-        searches = [
-            (label, budget)
-            for label in crossed
-            if not takes_slopes(label)
-            and sum(bool(results.of(label, budget, name)) for name in problems) >= 8
-        ]
-        by_kind[kind] = compare(
-            results,
-            problems,
-            searches,
-            "between",
-            by_label(results, DIFFERENCES, budget),
-        )
-    random = f"{DIFFERENCES} continuation=False"
+        problems = problems_of_kind(results, kind)
+        searches = of_values(searches_on_most(results, crossed, problems))
+        by_kind[kind] = compare(results, problems, searches, "between", rival)
+    random = by_label(results, f"{DIFFERENCES} continuation=False", BUDGET)
     by_seed = defaultdict[int, list[float]](list)
     for name in results.problems(kind="integer"):
-        for run in results.of(DIFFERENCES, budget, name):
+        for run in results.of(DIFFERENCES, BUDGET, name):
             by_seed[run.seed].append(results.gap(run, "between"))
     return {
         "kinds": by_kind,
         "random_starts": compare(
-            results,
-            results.problems(),
-            [("moead-de", budget)],
-            "between",
-            by_label(results, random, budget),
+            results, results.problems(), [("moead-de", BUDGET)], "between", random
         ),
         "integer_by_seed": [float(np.median(values)) for _, values in sorted(by_seed.items())],
     }
 
 
-def moves_with_other_kinds(results: Results) -> set[str]:
-    """The moves that were run with several kinds of energy."""
-    return {Problem(name).move for name in results.whole if Problem(name).kind in KINDS[1:]}
+def problems_of_kind(results: Results, kind: str) -> list[str]:
+    """The problems of a kind of energy, of the moves that were run with other kinds as well."""
+    moves = {Problem(name).move for name in results.whole if Problem(name).kind in KINDS[1:]}
+    return [name for name in results.problems(kind=kind) if Problem(name).move in moves]
+
+
+def searches_on_most(
+    results: Results, labels: Sequence[str], problems: Sequence[str]
+) -> list[Search]:
+    """Those of the methods that were run on most of the ten problems of a kind."""
+    searches = [(label, BUDGET) for label in labels]
+    return [search for search in searches if count_with_runs(results, search, problems) >= MOST]

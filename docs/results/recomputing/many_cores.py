@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import csv
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .experiment import BUDGETS, DIFFERENCES
 from .gaps import Results
-from .runs import Array
-from .significance import holm, signed_ranks
+from .runs import Array, rows_of
+from .significance import add_holm, signed_ranks
 
 CORES = 100
-TIMES = (10, 30, 100, 250)
-"""Time on these cores, in evaluations that follow one another."""
+TIMES = {1: (100, 1_000, 10_000), CORES: (10, 30, 100, 250)}
+"""By cores: times, in evaluations that follow one another."""
 
 
-def parallel_figures(results: Results) -> dict[str, Any]:
+def parallel_figures(results: Results, folder: Path) -> dict[str, Any]:
     """Return the gaps after a time on many cores, where every evaluation takes as long.
 
     A call for so many candidates takes as many evaluations one after another as there are rounds
@@ -27,44 +27,58 @@ def parallel_figures(results: Results) -> dict[str, Any]:
     100,000. SLSQP from random starts has as many of them side by side as cores are enough for, and
     is taken from a run of one after another.
     """
-    path = results.folder / "batches.csv"
-    if not path.exists():
+    rows = rows_of(folder / "batches.csv")
+    if not rows:
         return {}
-    with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    asked = defaultdict[str, list[float]](list)
+    rates = defaultdict[str, list[float]](list)
     calls = defaultdict[str, list[float]](list)
     for row in rows:
         label = f"{row['method']} {row['settings']}".strip()
-        side_by_side = 1
-        if "continuation=False" in label:
-            side_by_side = CORES // int(row["largest_call"])
-        rate = int(row["candidates"]) / int(row[f"time_on_{CORES}_cores"])
-        asked[label].append(side_by_side * rate)
+        rates[label].append(candidates_a_time(row, "continuation=False" in label))
         calls[label].append(int(row["candidates"]) / int(row["calls"]))
-    candidates = {label: float(np.median(values)) for label, values in asked.items()}
+    candidates = {label: float(np.median(values)) for label, values in rates.items()}
     long_runs = {run.problem for run in results.runs if run.axis == "large"}
     problems = [name for name in results.problems() if name in long_runs]
-    figures = dict[str, Any]()
-    for cores, times in ((1, (100, 1_000, 10_000)), (CORES, TIMES)):
-        for time in times:
-            gaps = dict[str, Array]()
-            for label, rate in candidates.items():
-                afforded = time * (rate if cores > 1 else 1.0)
-                values = [gap_after(results, name, label, afforded) for name in problems]
-                if np.isfinite(values).all():
-                    gaps[label] = np.array(values)
-            figures[f"{cores}, {time}"] = {
-                "cores": cores,
-                "time": time,
-                "rows": against_best_differences(gaps),
-            }
     return {
         "moves": len(problems),
         "candidates": candidates,
         "per_call": {label: float(np.median(values)) for label, values in calls.items()},
-        "times": figures,
+        "times": {
+            f"{cores}, {time}": {
+                "cores": cores,
+                "time": time,
+                "rows": rows_after(results, problems, candidates, cores, time),
+            }
+            for cores, times in TIMES.items()
+            for time in times
+        },
     }
+
+
+def candidates_a_time(row: Mapping[str, str], side_by_side: bool) -> float:
+    """Candidates of a run in the time of one evaluation, on all cores.
+
+    Where its starts can be side by side, as many are as cores are enough for.
+    """
+    starts = CORES // int(row["largest_call"]) if side_by_side else 1
+    return starts * (int(row["candidates"]) / int(row[f"time_on_{CORES}_cores"]))
+
+
+def rows_after(
+    results: Results,
+    problems: Sequence[str],
+    candidates: Mapping[str, float],
+    cores: int,
+    time: int,
+) -> list[dict[str, Any]]:
+    """The methods after a time; without those whose runs are too short for it."""
+    gaps = dict[str, Array]()
+    for label, rate in candidates.items():
+        afforded = time * (rate if cores > 1 else 1.0)
+        values = np.array([gap_after(results, name, label, afforded) for name in problems])
+        if np.isfinite(values).all():
+            gaps[label] = values
+    return against_best_differences(gaps)
 
 
 def against_best_differences(gaps: Mapping[str, Array]) -> list[dict[str, Any]]:
@@ -80,8 +94,7 @@ def against_best_differences(gaps: Mapping[str, Array]) -> list[dict[str, Any]]:
         }
         for label, values in gaps.items()
     ]
-    for row, p in zip(rows, holm([row["p"] for row in rows]), strict=True):
-        row["holm"] = p
+    add_holm(rows)
     return rows
 
 

@@ -7,20 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from .comparing import Rival, by_label, compare, searches_in
+from .comparing import LEAST_GAP, Rival, Search, by_label, compare, of_values, searches_in
 from .experiment import (
     BUDGETS,
     CENTRE,
-    CONTROL,
-    CONTROL_SETTINGS,
     DIFFERENCES,
+    GRADIENT_FRONT,
     OF_MAP,
     TERMS,
-    takes_slopes,
 )
 from .gaps import INDICATORS, MEASURES, Results
 from .runs import Problem, Run
 from .significance import LEVEL, holm, least_p
+
+FEWEST_MOVES = 5
+"""Moves without which a place of a line is left out."""
 
 
 def map_figures(results: Results, crossed: Sequence[str]) -> dict[str, Any]:
@@ -51,28 +52,36 @@ def cell(results: Results, terms: int, budget: int, crossed: Sequence[str]) -> d
         for title, rival in rivals.items():
             rows = compare(results, problems, searches, measure, rival)
             rows = [row for row in rows if row["moves"]]
-            if not rows:
-                continue
-            best = min(rows, key=lambda row: row["missing"])
-            compared = best["moves"] - best["no_control"]
-            best["compared"] = compared
-            best["least_p_holm"] = least_p(compared) * len(rows)
-            best["enough"] = bool(best["least_p_holm"] <= LEVEL)
-            best["verdict"] = bool(best["enough"] and best["holm"] <= LEVEL)
-            best["no_front"] = 2 * best["no_control"] > best["moves"]
-            ways[f"{measure}, {title}"] = best
+            if rows:
+                ways[f"{measure}, {title}"] = with_verdict(nearest(rows), len(rows))
     return {"terms": terms, "budget": budget, "ways": ways}
+
+
+def nearest(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The row with the least gap."""
+    return min(rows, key=lambda row: row["missing"])
+
+
+def with_verdict(row: dict[str, Any], searches: int) -> dict[str, Any]:
+    """The row of one of so many searches, and whether its moves are enough for a verdict."""
+    moves = row["moves"] - row["no_control"]
+    least_p_holm = least_p(moves) * searches
+    enough = bool(least_p_holm <= LEVEL)
+    return row | {
+        "compared": moves,
+        "least_p_holm": least_p_holm,
+        "enough": enough,
+        "verdict": bool(enough and row["holm"] <= LEVEL),
+        "no_front": 2 * row["no_control"] > row["moves"],
+    }
 
 
 def searches_of_cell(
     results: Results, terms: int, budget: int, crossed: Sequence[str]
-) -> list[tuple[str, int]]:
+) -> list[Search]:
     """The searches of a cell of the map that see values alone."""
-    return [
-        (label, spent)
-        for label, spent in searches_in(results, OF_MAP, budget, results.problems(terms), 5)
-        if label.partition(" ")[0] in crossed and not takes_slopes(label)
-    ]
+    methods = searches_in(results, OF_MAP, budget, results.problems(terms), 5)
+    return [search for search in of_values(methods) if search[0].partition(" ")[0] in crossed]
 
 
 def by_indicator(results: Results, crossed: Sequence[str]) -> dict[str, dict[str, int]]:
@@ -83,15 +92,7 @@ def by_indicator(results: Results, crossed: Sequence[str]) -> dict[str, dict[str
     """
     figures = {}
     for indicator in INDICATORS:
-        best = list[dict[str, Any]]()
-        for budget in BUDGETS:
-            for terms in TERMS:
-                problems = results.problems(terms)
-                searches = searches_of_cell(results, terms, budget, crossed)
-                rows = compare(results, problems, searches, indicator, with_intervals=False)
-                rows = [row for row in rows if row["moves"]]
-                if rows:
-                    best.append(min(rows, key=lambda row: row["missing"]))
+        best = best_of_cells(results, crossed, indicator)
         over_cells = holm([row["holm"] for row in best])
         verdicts = {"search": 0, "gradient": 0, "search_over_cells": 0, "gradient_over_cells": 0}
         for row, p in zip(best, over_cells, strict=True):
@@ -107,6 +108,20 @@ def by_indicator(results: Results, crossed: Sequence[str]) -> dict[str, dict[str
     return figures
 
 
+def best_of_cells(results: Results, crossed: Sequence[str], indicator: str) -> list[dict[str, Any]]:
+    """The search with the least gap of each cell of the map, by an indicator."""
+    best = list[dict[str, Any]]()
+    for budget in BUDGETS:
+        for terms in TERMS:
+            problems = results.problems(terms)
+            searches = searches_of_cell(results, terms, budget, crossed)
+            rows = compare(results, problems, searches, indicator, with_intervals=False)
+            rows = [row for row in rows if row["moves"]]
+            if rows:
+                best.append(nearest(rows))
+    return best
+
+
 def lines_over(
     results: Results,
     places: Sequence[tuple[float, int, int]],
@@ -117,31 +132,29 @@ def lines_over(
     A place is where a line goes on, and its coefficients and budget. All places of a line have the
     moves that every one of them has.
     """
-    control = f"{CONTROL} {CONTROL_SETTINGS}"
-    fewest = 5
-
-    def runs_at(method: str, terms: int, budget: int) -> dict[str, list[Run]]:
-        spent = 0 if method == control else budget
-        label = usual_label(results, method, spent)
-        runs_of = {name: results.of(label, spent, name) for name in results.problems(terms)}
-        return {Problem(name).move: runs for name, runs in runs_of.items() if runs}
-
     table = {
-        (method, x): runs_at(method, terms, budget)
-        for method in (control, *methods)
+        (method, x): runs_at(results, method, terms, 0 if method == GRADIENT_FRONT else budget)
+        for method in (GRADIENT_FRONT, *methods)
         for x, terms, budget in places
     }
-    table = {place: by_move for place, by_move in table.items() if len(by_move) >= fewest}
+    table = {place: by_move for place, by_move in table.items() if len(by_move) >= FEWEST_MOVES}
     moves = set.intersection(*map(set, table.values())) if table else set()
     lines: dict[str, dict[str, dict[str, list[float]]]] = {}
     for measure in MEASURES:
         lines[measure] = {}
         for (method, x), by_move in table.items():
-            lacks = [results.median(by_move[move], results.gap, measure) for move in moves]
+            lacks = results.median_gaps([by_move[move] for move in moves], measure)
             line = lines[measure].setdefault(method, {"x": [], "y": []})
             line["x"].append(x)
-            line["y"].append(max(float(np.median(lacks)), 1e-3))
+            line["y"].append(max(float(np.median(lacks)), LEAST_GAP))
     return lines
+
+
+def runs_at(results: Results, method: str, terms: int, budget: int) -> dict[str, list[Run]]:
+    """By move, the runs of a method with its usual settings."""
+    label = usual_label(results, method, budget)
+    runs_of = {name: results.of(label, budget, name) for name in results.problems(terms)}
+    return {Problem(name).move: runs for name, runs in runs_of.items() if runs}
 
 
 def usual_label(results: Results, method: str, budget: int) -> str:

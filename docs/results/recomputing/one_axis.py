@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from .comparing import _median, by_label, compare, searches_in
-from .experiment import DIFFERENCES, LIMITS, takes_slopes
+from .comparing import Search, by_label, compare, count_with_runs, of_values, searches_in
+from .experiment import DIFFERENCES, LIMITS
 from .gaps import Results
 from .runs import Problem
+from .significance import median_or_nan
 
 
 def limit_figures(results: Results) -> dict[str, dict[str, Any]]:
@@ -21,7 +23,8 @@ def limit_figures(results: Results) -> dict[str, dict[str, Any]]:
             methods = searches_in(results, ("limits",), budget, problems, 5)
             if not methods:
                 continue
-            searches = [pair for pair in methods if not takes_slopes(pair[0])]
+            searches = of_values(methods)
+            rival = by_label(results, DIFFERENCES, budget)
             figures[f"{limits}, {budget}"] = {
                 "limits": limits,
                 "budget": budget,
@@ -29,9 +32,7 @@ def limit_figures(results: Results) -> dict[str, dict[str, Any]]:
                 "same time": compare(
                     results, problems, searches, "between", results.control_within
                 ),
-                "differences": compare(
-                    results, problems, searches, "between", by_label(results, DIFFERENCES, budget)
-                ),
+                "differences": compare(results, problems, searches, "between", rival),
             }
     return figures
 
@@ -41,39 +42,41 @@ def few_figures(results: Results) -> list[dict[str, Any]]:
     figures = list[dict[str, Any]]()
     problems = sorted({run.problem for run in results.runs if run.axis == "few"})
     for budget in (200, 1_000):
-        for noise in ("", "noise=0.01"):
-            labels = sorted(
-                {
-                    run.label
-                    for run in results.runs
-                    if run.axis in ("few", "crossing")
-                    and run.budget == budget
-                    and run.problem in problems
-                    and ("noise=0.01" in run.settings) == bool(noise)
-                }
-            )
-            methods = [
-                (label, budget)
-                for label in labels
-                if 2 * sum(bool(results.of(label, budget, name)) for name in problems)
-                > len(problems)
-            ]
+        for is_noisy in (False, True):
+            methods = methods_with_few(results, problems, budget, is_noisy)
             if not methods:
                 continue
             rows = compare(results, problems, methods, "between")
             steps = [row for row in rows if row["method"].startswith(DIFFERENCES)]
             best_steps = min(steps, key=lambda row: row["missing"])
             rival = by_label(results, best_steps["method"], budget)
-            searches = [pair for pair in methods if not takes_slopes(pair[0])]
+            against = compare(results, problems, of_values(methods), "between", rival)
             figures.append(
                 {
                     "budget": budget,
-                    "noise": 0.01 if noise else 0.0,
+                    "noise": 0.01 if is_noisy else 0.0,
                     "methods": rows,
-                    "differences": compare(results, problems, searches, "between", rival),
+                    "differences": against,
                 }
             )
     return figures
+
+
+def methods_with_few(
+    results: Results, problems: Sequence[str], budget: int, is_noisy: bool
+) -> list[Search]:
+    """Methods that were run with few candidates on most of the problems, with noise or without."""
+    labels = {
+        run.label
+        for run in results.runs
+        if run.axis in ("few", "crossing")
+        and run.budget == budget
+        and run.problem in problems
+        and ("noise=0.01" in run.settings) == is_noisy
+    }
+    methods = [(label, budget) for label in sorted(labels)]
+    half = len(problems) / 2
+    return [search for search in methods if count_with_runs(results, search, problems) > half]
 
 
 def noise_figures(results: Results) -> dict[str, Any]:
@@ -99,7 +102,7 @@ def objective_figures(results: Results) -> dict[str, Any]:
         grid = [("epsilon points=50", 0)] if searches else []
         rows[count] = compare(results, problems, [*searches, *grid], "points") if searches else []
         times = [run.seconds for name in problems for run in results.control(name)]
-        seconds[count] = _median(np.array(times))
+        seconds[count] = median_or_nan(np.array(times))
     return {"objectives": rows, "grid_seconds": seconds}
 
 

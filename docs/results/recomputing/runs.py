@@ -72,16 +72,23 @@ def numbers(text: str) -> Array:
     return np.array(text.split(), dtype=float)
 
 
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """The rows of a table, which may be packed; none where it is missing."""
+    if not path.exists():
+        return []
+    opened = lzma.open if path.suffix == ".xz" else open
+    with opened(path, "rt", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def read_runs(folder: Path) -> list[Run]:
     """All runs of the tables of a folder."""
-    with (folder / "scales.csv").open(newline="") as file:
-        scales = {row["problem"]: row for row in csv.DictReader(file)}
-    runs = list[Run]()
-    for path in sorted((folder / "runs").glob("*.csv.xz")):
-        with lzma.open(path, "rt", newline="") as file:
-            for row in csv.DictReader(file):
-                runs.append(run_of(row, scales[row["problem"]], path.name.partition(".")[0]))
-    return runs
+    scales = {row["problem"]: row for row in rows_of(folder / "scales.csv")}
+    return [
+        run_of(row, scales[row["problem"]], path.name.partition(".")[0])
+        for path in sorted((folder / "runs").glob("*.csv.xz"))
+        for row in rows_of(path)
+    ]
 
 
 def run_of(row: Mapping[str, str], scale: Mapping[str, str], axis: str) -> Run:

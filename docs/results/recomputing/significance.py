@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from scipy.stats import wilcoxon
 from .runs import Array
 
 LEVEL = 0.05
+"""A difference with a smaller p is a verdict."""
 
 
 def holm(values: Sequence[float]) -> list[float]:
@@ -23,6 +25,17 @@ def holm(values: Sequence[float]) -> list[float]:
         largest = max(largest, min(1.0, p * (len(order) - rank)))
         adjusted[i] = largest
     return adjusted
+
+
+def add_holm(rows: Sequence[dict[str, Any]]) -> None:
+    """Add to rows that were tested together, each with its p, Holm's p; a row may have no p."""
+    for row, adjusted in zip(rows, holm([row.get("p", np.nan) for row in rows]), strict=True):
+        row["holm"] = adjusted
+
+
+def median_or_nan(values: Array) -> float:
+    """The median; NaN where there are no values."""
+    return float(np.median(values)) if len(values) else float("nan")
 
 
 def least_p(moves: int) -> float:

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import csv
 import json
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .comparing import searches_in
 from .experiment import DIFFERENCES
-from .first_table import ROWS, Row, chosen_on_first, judged
+from .first_table import ROWS, Row, chosen_on_first, judged, problems_of
 from .gaps import MEASURES, Results
-from .runs import Problem
-from .significance import holm, signed_ranks
+from .runs import Array, Problem, rows_of
+from .significance import add_holm, signed_ranks
 
 
-def tuned(results: Results) -> list[dict[str, Any]]:
+def tuned(results: Results, folder: Path) -> list[dict[str, Any]]:
     """Default and tuned settings by cell and method on the moves of testing, and what was tried."""
-    path = results.folder / "tuning.csv"
-    if not path.exists():
-        return []
-    with path.open(newline="") as file:
-        trials = list(csv.DictReader(file))
+    trials = rows_of(folder / "tuning.csv")
     figures = list[dict[str, Any]]()
     for cell, method in dict.fromkeys((trial["cell"], trial["method"]) for trial in trials):
         tried = [trial for trial in trials if (trial["cell"], trial["method"]) == (cell, method)]
@@ -41,9 +38,7 @@ def tuned(results: Results) -> list[dict[str, Any]]:
             }
         )
     for measure in MEASURES:
-        rows = [row[measure] for row in figures if measure in row]
-        for row, p in zip(rows, holm([row["p"] for row in rows]), strict=True):
-            row["holm"] = p
+        add_holm([row[measure] for row in figures if measure in row])
     return figures
 
 
@@ -62,17 +57,8 @@ def on_testing(results: Results, row: Row, method: str) -> dict[str, Any]:
     if not runs:
         return {}
     label = runs[-1].label
-    problems_of = {kind: results.problems(kind=kind) for kind in row.kinds}
     problems = sorted({run.problem for run in runs if run.label == label})
-    labels = [
-        other
-        for other, _ in searches_in(results, row.axes, row.budget, problems, 5)
-        if other.partition(" ")[0] == method
-        and "continuation" not in other
-        and ("noise=" in other) == bool(row.noise)
-        and other.endswith(row.noise)
-    ]
-    usual = chosen_on_first(results, row, labels, problems_of)
+    usual = usual_settings(results, row, method, problems)
     of_row = judged(results, row)
     other = of_row["search"] if method == DIFFERENCES else of_row["rival"]
     problems = [
@@ -80,25 +66,46 @@ def on_testing(results: Results, row: Row, method: str) -> dict[str, Any]:
         for name in problems
         if results.of(usual, row.budget, name) and results.of(other, row.budget, name)
     ]
-    figures: dict[str, Any] = {"usual": usual, "other": other}
-    for measure in MEASURES:
-        default, better, against = (
-            np.array(
-                [
-                    results.median(results.of(name, row.budget, problem), results.gap, measure)
-                    for problem in problems
-                ]
+    return {
+        "usual": usual,
+        "other": other,
+        **{
+            measure: gains_of_tuning(
+                *(gaps_on(results, row, name, problems, measure) for name in (usual, label, other))
             )
-            for name in (usual, label, other)
-        )
-        figures[measure] = {
-            "moves": len(problems),
-            "default": float(np.median(default)),
-            "tuned": float(np.median(better)),
-            "nearer": int((better < default).sum()),
-            "p": signed_ranks(better - default),
-            "other": float(np.median(against)),
-            "nearer_than_other": int((better < against).sum()),
-            "p_other": signed_ranks(better - against),
-        }
-    return figures
+            for measure in MEASURES
+        },
+    }
+
+
+def usual_settings(results: Results, row: Row, method: str, problems: Sequence[str]) -> str:
+    """The settings of a method, none of them tuned, that are nearest on the row's first seeds."""
+    labels = [
+        label
+        for label, _ in searches_in(results, row.axes, row.budget, problems, 5)
+        if label.partition(" ")[0] == method
+        and "continuation" not in label
+        and ("noise=" in label) == bool(row.noise)
+        and label.endswith(row.noise)
+    ]
+    return chosen_on_first(results, row, labels, problems_of(results, row))
+
+
+def gaps_on(results: Results, row: Row, label: str, problems: Sequence[str], measure: str) -> Array:
+    """Gaps of a method on problems, medians over seeds."""
+    runs = [results.of(label, row.budget, problem) for problem in problems]
+    return results.median_gaps(runs, measure)
+
+
+def gains_of_tuning(default: Array, better: Array, against: Array) -> dict[str, Any]:
+    """Tuned settings beside those by default, and beside another method, on the same moves."""
+    return {
+        "moves": len(default),
+        "default": float(np.median(default)),
+        "tuned": float(np.median(better)),
+        "nearer": int((better < default).sum()),
+        "p": signed_ranks(better - default),
+        "other": float(np.median(against)),
+        "nearer_than_other": int((better < against).sum()),
+        "p_other": signed_ranks(better - against),
+    }
