@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 import moocore
 import numpy as np
 
-from .areas import area
-from .basins import Run, read
+from .areas import gaps_to_best, scaled_by_best
+from .basins import BasinsRun, read
 from .runs import Array
-from .significance import holm, signed_ranks
+from .significance import add_holm, signed_ranks
 
 FIRST_SEEDS = 2
 """Seeds below choose, the others judge."""
@@ -46,7 +46,7 @@ Gaps = dict[str, dict[Key, float]]
 """By problem, then by run."""
 
 
-def gaps_by(runs: Sequence[Run], indicator: str) -> Gaps:
+def gaps_by(runs: Sequence[BasinsRun], indicator: str) -> Gaps:
     """Return how far every front is from the best that is known of its problem [%]."""
     problems = dict.fromkeys(run.problem for run in runs)
     return {
@@ -55,28 +55,21 @@ def gaps_by(runs: Sequence[Run], indicator: str) -> Gaps:
     }
 
 
-def gaps_of_problem(runs: Sequence[Run], indicator: str) -> dict[Key, float]:
+def gaps_of_problem(runs: Sequence[BasinsRun], indicator: str) -> dict[Key, float]:
     """Return the gaps of a problem's runs, by an indicator."""
-    best = moocore.filter_dominated(np.vstack([run.points for run in runs]))
-    least = best.min(axis=0)
-    extent = np.ptp(best, axis=0)
-    best = (best - least) / extent
-    return {
-        Key(run.method, run.candidates, run.seed): gap_of(
-            (run.points - least) / extent, best, indicator
-        )
-        for run in runs
-    }
+    fronts = [run.points for run in runs]
+    gaps = gaps_to_best(fronts) if indicator == "points" else distances_to_best(fronts, indicator)
+    keys = [Key(run.method, run.candidates, run.seed) for run in runs]
+    return dict(zip(keys, gaps, strict=True))
 
 
-def gap_of(points: Array, best: Array, indicator: str) -> float:
-    """Return how far points are from the best, both in the problem's scale [%]."""
-    if indicator == "points":
-        return 100 * (1 - area(points) / area(best))
-    if not len(points):
-        return NO_POINTS
+def distances_to_best(fronts: Sequence[Array], indicator: str) -> list[float]:
+    """Return IGD+ or the additive epsilon of every front [% of the problem's scale]."""
     distance = moocore.igd_plus if indicator == "igd+" else moocore.epsilon_additive
-    return 100 * float(distance(points, ref=best))
+    scaled, best = scaled_by_best(fronts)
+    return [
+        100 * float(distance(points, ref=best)) if len(points) else NO_POINTS for points in scaled
+    ]
 
 
 def medians(gaps: Gaps, method: str, candidates: int, seeds: Iterable[int]) -> dict[str, float]:
@@ -104,7 +97,7 @@ def against(ours: Mapping[str, float], theirs: Mapping[str, float]) -> dict[str,
     }
 
 
-def table(runs: Sequence[Run], gaps: Gaps, candidates: int) -> list[dict[str, Any]]:
+def table(runs: Sequence[BasinsRun], gaps: Gaps, candidates: int) -> list[dict[str, Any]]:
     """Return a row for every method with so many candidates, the best first, against SLSQP.
 
     The rival is SLSQP with the step of the smaller median gap; p is Holm's over the methods.
@@ -139,11 +132,13 @@ def table(runs: Sequence[Run], gaps: Gaps, candidates: int) -> list[dict[str, An
         for method in order
         if rival and not is_slsqp(method)
     }
-    adjusted = holm([test["p"] for test in tests.values()])
-    for (method, test), p in zip(tests.items(), adjusted, strict=True):
-        row = rows[order.index(method)]
-        row |= {"better": test["better"], "of": test["of"], "holm": p}
-    return rows
+    add_holm([*tests.values()])
+    return [row | against_slsqp(tests.get(row["method"])) for row in rows]
+
+
+def against_slsqp(test: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Return what a row of the table says of a comparison with SLSQP, if there is one."""
+    return {name: test[name] for name in ("better", "of", "holm")} if test else {}
 
 
 def is_slsqp(method: str) -> bool:
@@ -166,7 +161,7 @@ def blocks_of(problem: str) -> tuple[str, str]:
     return "post" if "-post-" in problem else "no post", terms
 
 
-def judged(runs: Sequence[Run], gaps_of: Mapping[str, Gaps]) -> dict[str, Any]:
+def judged(runs: Sequence[BasinsRun], gaps_of: Mapping[str, Gaps]) -> dict[str, Any]:
     """The report's row: a search and SLSQP's step, chosen on the first seeds, on fresh ones."""
     gaps = gaps_of["points"]
     of_budget = [run for run in runs if run.candidates == FEW]
