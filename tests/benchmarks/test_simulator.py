@@ -75,14 +75,14 @@ def test_a_run_is_a_row_and_is_not_run_again(tmp_path, monkeypatch):
     monkeypatch.setattr(simulator, "LONG", 20)
     monkeypatch.setattr(simulator, "outside", lambda: ())
     table = tmp_path / "black_box.csv"
-    simulator.run_three(1, tmp_path)
+    simulator.run_three(1, (), tmp_path)
     content = table.read_text()
     rows = list(csv.DictReader(content.splitlines()))
     assert [(row["method"], row["seed"]) for row in rows] == [("moead-de", "100"), ("random", "0")]
     for row in rows:
         residuals, energies = row["residuals_mm"].split(), row["energies_mJ"].split()
         assert len(residuals) == len(energies) > 0
-    simulator.run_three(1, tmp_path)
+    simulator.run_three(1, (), tmp_path)
     assert table.read_text() == content
 
 
@@ -91,9 +91,12 @@ def test_runs_of_drawn_arms_are_packed_and_not_run_again(tmp_path, monkeypatch):
     monkeypatch.setattr(simulator, "drawn", lambda: ARMS[2:])
     monkeypatch.setattr(simulator, "BUDGET", 20)
     monkeypatch.setattr(simulator, "LONG", 20)
+    monkeypatch.setattr(simulator, "SOME", 30)
     monkeypatch.setattr(simulator, "outside", lambda: ())
     for _ in range(2):
-        simulator.PLANS["drawn"](1, tmp_path)
+        simulator.PLANS["drawn"](1, (), tmp_path)
         runs = read(tmp_path / "arms.csv.xz")
-        assert [(run.method, run.seed) for run in runs] == [("moead-de", 100), ("random", 0)]
+        assert [(run.method, run.candidates, run.seed) for run in runs] == [
+            ("moead-de", 20, 100), ("random", 20, 0), ("gp", 30, 100),
+        ]  # fmt: skip
         assert all(len(run.points) for run in runs)

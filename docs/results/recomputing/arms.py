@@ -161,39 +161,56 @@ def blocks_of(problem: str) -> tuple[str, str]:
     return "post" if "-post-" in problem else "no post", terms
 
 
-def judged(runs: Sequence[BasinsRun], gaps_of: Mapping[str, Gaps]) -> dict[str, Any]:
-    """The report's row: a search and SLSQP's step, chosen on the first seeds, on fresh ones."""
+def seeds_of(gaps: Gaps, method: str) -> set[int]:
+    """Return the seeds that a method has on every problem."""
+    return set.intersection(
+        *(
+            {key.seed for key in of_problem if (key.method, key.candidates) == (method, FEW)}
+            for of_problem in gaps.values()
+        )
+    )
+
+
+def judged(gaps_of: Mapping[str, Gaps]) -> dict[str, Any]:
+    """The report's row: a search and SLSQP's step, chosen on the first seeds, on fresh ones.
+
+    Fresh are the seeds that both have on every problem; a rival from outside may have fewer.
+    """
     gaps = gaps_of["points"]
-    of_budget = [run for run in runs if run.candidates == FEW]
-    methods = sorted({run.method for run in of_budget} - set(OUTSIDE))
-    fresh = sorted({run.seed for run in of_budget if run.seed >= FIRST_SEEDS})
+    methods = sorted(methods_in(gaps) - set(OUTSIDE))
     search = chosen(gaps, [method for method in methods if not is_slsqp(method)])
     rival = chosen(gaps, [method for method in methods if is_slsqp(method)])
-    if not (search and rival and fresh):
+    if not (search and rival):
+        return {}
+    fresh = (seeds_of(gaps, search) & seeds_of(gaps, rival)) - set(range(FIRST_SEEDS))
+    if not fresh:
         return {}
 
-    def values(method: str, indicator: str = "points") -> dict[str, float]:
-        return medians(gaps_of[indicator], method, FEW, fresh)
+    def compared(other: str, indicator: str = "points", block: str = "") -> dict[str, Any]:
+        shared = fresh & seeds_of(gaps, other)
+        values = [medians(gaps_of[indicator], method, FEW, shared) for method in (search, other)]
+        if block:
+            values = [in_block(of_method, block) for of_method in values]
+        test = against(*values)
+        return test | {"seeds": len(shared)}
 
     blocks = sorted({block for problem in gaps for block in blocks_of(problem)})
     return {
         "search": search,
         "rival": rival,
-        "seeds": len(fresh),
-        **against(values(search), values(rival)),
-        "by": {
-            name: against(values(search, name), values(rival, name)) for name in INDICATORS
-        },
-        "blocks": {
-            block: against(in_block(values(search), block), in_block(values(rival), block))
-            for block in blocks
-        },
+        **compared(rival),
+        "by": {name: compared(rival, name) for name in INDICATORS},
+        "blocks": {block: compared(rival, "points", block) for block in blocks},
         "outside": {
-            method: against(values(search), values(method))
-            for method in OUTSIDE
-            if values(method)
+            method: compared(method) for method in OUTSIDE if fresh & seeds_of(gaps, method)
         },
-    }  # fmt: skip
+    }
+
+
+def methods_in(gaps: Gaps) -> set[str]:
+    """Return the methods that were run with few candidates."""
+    keys = [key for of_problem in gaps.values() for key in of_problem]
+    return {key.method for key in keys if key.candidates == FEW and key.seed != LONG_SEED}
 
 
 def in_block(values: Mapping[str, float], block: str) -> dict[str, float]:
@@ -203,8 +220,7 @@ def in_block(values: Mapping[str, float], block: str) -> dict[str, float]:
 
 def of_problems(gaps: Gaps, row: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return each problem's gaps over all seeds: of the row's search and rival, and the best."""
-    keys = [key for of_problem in gaps.values() for key in of_problem]
-    methods = sorted({key.method for key in keys if key.candidates == FEW})
+    methods = sorted(methods_in(gaps))
     every = {method: medians(gaps, method, FEW, range(LONG_SEED)) for method in methods}
     rows = list[dict[str, Any]]()
     for problem in sorted(gaps):
@@ -221,18 +237,26 @@ def of_problems(gaps: Gaps, row: Mapping[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
+def run_name(run: BasinsRun) -> str:
+    """Return a run's method and candidates."""
+    return f"{run.method} {run.candidates}"
+
+
 def arm_figures(folder: Path) -> dict[str, Any]:
     """All figures of the drawn arms; none where the file is missing."""
     runs = read(folder / "arms.csv.xz")
     if not runs:
         return {}
     gaps_of = {indicator: gaps_by(runs, indicator) for indicator in INDICATORS}
-    row = judged(runs, gaps_of)
+    row = judged(gaps_of)
     budgets = sorted({run.candidates for run in runs if run.seed != LONG_SEED})
     return {
         "runs": len(runs),
         "hours": sum(run.seconds for run in runs) / 3600,
         "problems": len(gaps_of["points"]),
+        "longer": [*dict.fromkeys(run_name(run) for run in runs if run.seed == LONG_SEED)],
+            {f"{run.method} {run.candidates}" for run in runs if run.seed == LONG_SEED}
+        ),
         "cells": {str(budget): table(runs, gaps_of["points"], budget) for budget in budgets},
         "judged": row,
         "of_problems": of_problems(gaps_of["points"], row) if row else [],
