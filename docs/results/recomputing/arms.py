@@ -255,8 +255,6 @@ def arm_figures(folder: Path) -> dict[str, Any]:
         "hours": sum(run.seconds for run in runs) / 3600,
         "problems": len(gaps_of["points"]),
         "longer": [*dict.fromkeys(run_name(run) for run in runs if run.seed == LONG_SEED)],
-            {f"{run.method} {run.candidates}" for run in runs if run.seed == LONG_SEED}
-        ),
         "cells": {str(budget): table(runs, gaps_of["points"], budget) for budget in budgets},
         "judged": row,
         "of_problems": of_problems(gaps_of["points"], row) if row else [],
