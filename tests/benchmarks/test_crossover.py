@@ -42,6 +42,7 @@ from quietarm.views.pictures import grammar  # noqa: E402
 recompute = page.recompute_module(RESULTS)
 from recomputing.areas import area, best_known  # noqa: E402
 from recomputing.first_table import judged_rows  # noqa: E402
+from recomputing.further_axes import further_figures  # noqa: E402
 from recomputing.gaps import Results  # noqa: E402
 from recomputing.published import differences, other_lines, wrong_lines  # noqa: E402
 from recomputing.runs import Problem, Run, read_runs  # noqa: E402
@@ -118,27 +119,52 @@ def test_what_the_first_table_compares_has_fifteen_seeds_in_the_plan(planned):
         assert seeds == set(range(15))
 
 
+def made_up_runs(axis, method, lacks_of_seeds, kind="absolute"):
+    """On ten moves, the runs of a method: its first point lacks so much, and more on later moves.
+
+    No two moves differ by as much: p of ties takes a second.
+    """
+    settings, budget = ("points=50", 0) if method == "epsilon" else ("", 10_000)
+    return [
+        Run(
+            axis, f"single-link-m{move}-6-{kind}", method, settings, budget, seed,
+            1.0, 1.0, points := np.array([[lacks * (1 + move / 100), 0.0], [0.0, 1.0]]), points,
+            np.empty((0, 3)),
+        )
+        for move in range(10)
+        for seed, lacks in enumerate(lacks_of_seeds)
+    ]  # fmt: skip
+
+
+def test_a_new_axis_is_in_the_appendix_by_its_runs_alone():
+    """Neither recompute.py nor a template knows it: its name is what its problems' names say."""
+    lacks = {"epsilon": [0.0], "gde3": [0.2], "slsqp": [0.3]}
+    runs = [
+        run
+        for method, values in lacks.items()
+        for run in made_up_runs("sticking", method, values, "absolute-sticking")
+    ]
+    further = further_figures(Results(runs))
+    ((name, cells),) = [(name, cells) for name, cells in further.items() if cells]
+    assert name == "absolute-sticking, 6 coefficients"
+    figures = json.loads((RESULTS / "figures.json").read_text())
+    text = page.page_of("further.md", figures | {"further": further}, RESULTS)
+    (cell,) = cells
+    assert [row["method"] for row in cell["differences"]] == ["gde3"]
+    assert "### Absolute-sticking, 6 coefficients" in text
+    # all ten moves of one sign, and one comparison
+    assert re.search(r"\| 10,000 \| 10 \| 1 \| GDE3 \|.*\| 10 of 10 \| 0.002 \|$", text, re.M)
+
+
 def test_first_seeds_choose_and_fresh_ones_judge():
     """Luck of the first seeds chooses a search, and does not count for it."""
-    moves = [f"single-link-m{number}-6-absolute" for number in range(10)]
-
-    def runs(method, first, fresh, budget=10_000):
-        return [
-            Run(
-                "centre", name, method, "points=50" if method == "epsilon" else "", budget, seed,
-                1.0, 1.0, points := np.array([[lacks, 0.0], [0.0, 1.0]]), points, np.empty((0, 3)),
-            )
-            for name in moves
-            for seed, lacks in enumerate([first] * 3 + [fresh] * 2)
-        ]  # fmt: skip
-
-    all_runs = [
-        *runs("epsilon", 0.0, 0.0, 0),
-        *runs("gde3", 0.1, 0.4),
-        *runs("nsga2", 0.2, 0.2),
-        *runs("slsqp", 0.3, 0.3),
+    runs = [
+        *made_up_runs("centre", "epsilon", [0.0] * 5),
+        *made_up_runs("centre", "gde3", [0.1] * 3 + [0.4] * 2),
+        *made_up_runs("centre", "nsga2", [0.2] * 5),
+        *made_up_runs("centre", "slsqp", [0.3] * 5),
     ]
-    (row,) = [row for row in judged_rows(Results(all_runs)) if row["row"] == "smooth"]
+    (row,) = [row for row in judged_rows(Results(runs)) if row["row"] == "smooth"]
     assert (row["search"], row["rival"]) == ("gde3", "slsqp")
     (judged,) = row["comparisons"]
     assert (judged["moves"], judged["seeds"]) == (10, 2)

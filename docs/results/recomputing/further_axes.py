@@ -58,9 +58,10 @@ def further_axes(results: Results) -> dict[str, tuple[int, str]]:
     An axis without a name of its own is called by its kind and coefficients.
     """
     known = {*TABLES, *OTHER_TABLES}
-    cases = {(Problem(run.problem).terms, Problem(run.problem).kind)
-             for run in results.runs if run.axis not in known}  # fmt: skip
-    return FURTHER | {f"{kind}, {terms} coefficients": (terms, kind) for terms, kind in cases}
+    names = {run.problem for run in results.runs if run.axis not in known}
+    cases = {(Problem(name).terms, Problem(name).kind) for name in names} - {*FURTHER.values()}
+    others = {f"{kind}, {terms} coefficients": (terms, kind) for terms, kind in sorted(cases)}
+    return FURTHER | others
 
 
 def further_cell(

@@ -8,14 +8,7 @@ from typing import Any
 import numpy as np
 
 from .comparing import LEAST_GAP, Rival, Search, by_label, compare, of_values, searches_in
-from .experiment import (
-    BUDGETS,
-    CENTRE,
-    DIFFERENCES,
-    GRADIENT_FRONT,
-    OF_MAP,
-    TERMS,
-)
+from .experiment import BUDGETS, CENTRE, DIFFERENCES, GRADIENT_FRONT, OF_MAP, TERMS
 from .gaps import INDICATORS, MEASURES, Results
 from .runs import Problem, Run
 from .significance import LEVEL, holm, least_p

@@ -11,6 +11,10 @@ from typing import Any
 
 import numpy as np
 
+PAGES = ("report.md", "appendix.md")
+OF_SIZE = re.compile(r"[\d.]+ MB in all")
+"""Of the folder, which holds the page itself."""
+
 
 def differences(first: Any, second: Any, place: str = "") -> list[str]:
     """Where two documents differ by more than a relative 1e-6."""
@@ -26,11 +30,6 @@ def differences(first: Any, second: Any, place: str = "") -> list[str]:
     else:
         same = first == second
     return [] if same else [f"{place}: {first} and {second}"]
-
-
-PAGES = ("report.md", "appendix.md")
-OF_SIZE = re.compile(r"[\d.]+ MB in all")
-"""Of the folder, which holds the page itself."""
 
 
 def wrong_lines(folder: Path, figures: Mapping[str, Any]) -> list[str]:
