@@ -128,8 +128,6 @@ def drawn_plan(seeds: int) -> Iterator[Planned]:
         yield arm, LONG_METHODS[place % 2], LONG_SEED, LONG, searched
     for seed in range(seeds):
         yield from of_seed(drawn(), seed)
-    for arm in drawn():
-        yield arm, "gp", LONG_SEED, SOME, searched  # the best known fronts are mostly of `gp`
 
 
 def some_plan(seeds: int) -> Iterator[Planned]:

@@ -228,6 +228,7 @@ def of_problems(gaps: Gaps, row: Mapping[str, Any]) -> list[dict[str, Any]]:
         rows.append(
             {
                 "problem": problem,
+                "post": "post" in blocks_of(problem),
                 "search": every[row["search"]][problem],
                 "slsqp": every[row["rival"]][problem],
                 "best": best,
@@ -235,11 +236,6 @@ def of_problems(gaps: Gaps, row: Mapping[str, Any]) -> list[dict[str, Any]]:
             }
         )
     return rows
-
-
-def run_name(run: BasinsRun) -> str:
-    """Return a run's method and candidates."""
-    return f"{run.method} {run.candidates}"
 
 
 def arm_figures(folder: Path) -> dict[str, Any]:
@@ -254,7 +250,6 @@ def arm_figures(folder: Path) -> dict[str, Any]:
         "runs": len(runs),
         "hours": sum(run.seconds for run in runs) / 3600,
         "problems": len(gaps_of["points"]),
-        "longer": [*dict.fromkeys(run_name(run) for run in runs if run.seed == LONG_SEED)],
         "cells": {str(budget): table(runs, gaps_of["points"], budget) for budget in budgets},
         "judged": row,
         "of_problems": of_problems(gaps_of["points"], row) if row else [],
