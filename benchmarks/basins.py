@@ -109,11 +109,9 @@ def of_posts() -> tuple[Subject, ...]:
 @cache
 def of_simulator() -> tuple[Subject, ...]:
     """MuJoCo's arm with a post that crosses, four and eight coefficients."""
-    from parts.simulated_arm import SimulatedArm
+    from parts.simulated_arm import CROSSING, SimulatedArm
 
-    arms = [SimulatedArm(f"simulated-post-{terms}", terms, crosses=True) for terms in (4, 8)]
-    for arm in arms:
-        arm.__dict__["lower"], arm.__dict__["upper"] = arm.box
+    arms = [SimulatedArm(f"simulated-post-{terms}", terms, CROSSING) for terms in (4, 8)]
     return tuple(of_function(arm.name, arm) for arm in arms)
 
 
@@ -303,8 +301,12 @@ def row_of(run: Run) -> list[str]:
     seconds = time.process_time() - began
     points = points[thinned(points, POINTS)] if len(points) else points
     print(*run.key, f"{seconds:.3g} s", flush=True)
-    words = [" ".join(f"{value:.6g}" for value in column) for column in (points * (1e3, 1)).T]
-    return [*run.key, f"{seconds:.3g}", *words]
+    return [*run.key, f"{seconds:.3g}", *words_of(points * (1e3, 1))]
+
+
+def words_of(points: Array) -> list[str]:
+    """Return the two cells of a table that hold points."""
+    return [" ".join(f"{value:.6g}" for value in column) for column in points.T]
 
 
 def add(rows: list[list[str]], path: Path) -> None:

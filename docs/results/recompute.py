@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 sys.path.append(str(Path(__file__).parent))
+from recomputing.arms import arm_figures
 from recomputing.attained_targets import attained_figures, runtime_profiles
 from recomputing.basins import basins_figures
 from recomputing.black_boxes import black_box_figures
@@ -85,6 +86,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "attained": attained_figures(results, centre, methods),
         "profiles": runtime_profiles(results),
         "black_box": black_box_figures(folder),
+        "arms": arm_figures(folder),
         "basins": basins_figures(folder),
         "prediction": prediction_figures(results, folder, crossed),
     }

@@ -16,6 +16,7 @@ sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "docs" / "results")]
 import basins  # noqa: E402
 from parts import outside_rivals, posts  # noqa: E402
 from parts.posts_gradient import is_free, least_energy  # noqa: E402
+from recomputing.arms import arm_figures  # noqa: E402
 from recomputing.basins import gaps_of, read  # noqa: E402
 
 
@@ -34,6 +35,33 @@ def test_gaps_are_shares_of_the_area_that_the_best_points_of_all_runs_dominate(t
     assert gaps["gradient", 0]["posts-1"] == pytest.approx([0.0])
     assert gaps["slsqp", 200]["posts-1"] == pytest.approx([100 * (1 - corners / whole)])
     assert gaps["es", 200]["posts-1"] == pytest.approx([100 * (1 - 0.6**2 / whole)])
+
+
+def test_first_seeds_choose_the_method_of_the_arms_and_fresh_ones_judge(tmp_path):
+    """Ten problems alike, a point of each method: areas by hand."""
+    best = {"gp": [1.2, 1.4], "es": [1.3, 1.1], "slsqp": [1.5, 1.5], "slsqp step=0.01": [1.6, 1]}
+    rows = ["problem,method,candidates,seed,seconds,residuals_mm,energies_J"]
+    for number in range(10):
+        name = f"arm-{'post-' * (number > 4)}{4 + 4 * (number % 2)}-{number}"
+        rows.append(f"{name},moead-de,2000,100,9,0 2,4 2")
+        rows += [
+            f"{name},{method},300,{seed},1,{values[seed > 1]},3"
+            for method, values in best.items()
+            for seed in range(3)
+        ]
+    (tmp_path / "arms.csv.xz").write_bytes(lzma.compress("\n".join(rows).encode()))
+    figures = arm_figures(tmp_path)
+    row = figures["judged"]
+    assert (row["search"], row["rival"], row["seeds"]) == ("gp", "slsqp", 1)
+    # in the problem's scale the best points are (0, 1), (0.5, 0.5) and (1, 0); corners at 1.1
+    whole = 0.5 * 0.1 + 0.5 * 0.6 + 0.1 * 1.1
+    assert row["missing"] == pytest.approx(100 * (1 - (1.1 - 0.7) * 0.6 / whole))
+    assert row["control"] == pytest.approx(100 * (1 - (1.1 - 0.75) * 0.6 / whole))
+    assert (row["better"], row["of"], row["equal"]) == (10, 10, 0)
+    assert row["p"] == pytest.approx(2 / 2**10)  # all ten of one sign
+    assert {block: test["of"] for block, test in row["blocks"].items()} == {
+        "post": 5, "no post": 5, "4 coefficients": 5, "8 coefficients": 5,
+    }  # fmt: skip
 
 
 def test_the_rival_of_twenty_lines_has_no_more():

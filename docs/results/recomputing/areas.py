@@ -20,16 +20,25 @@ def area(points: Array) -> float:
     return float(moocore.hypervolume(points, ref=[CORNER] * points.shape[1]))
 
 
+def scaled_by_best(fronts: Sequence[Array]) -> tuple[list[Array], Array]:
+    """Return all fronts, and the best points of all of them, in the scale of these points.
+
+    It goes from their least to their largest values.
+    """
+    best = moocore.filter_dominated(np.vstack(fronts))
+    least = best.min(axis=0)
+    extent = np.ptp(best, axis=0)
+    return [(points - least) / extent for points in fronts], (best - least) / extent
+
+
 def gaps_to_best(fronts: Sequence[Array]) -> list[float]:
     """What every front lacks of the area of the best points of all of them [%].
 
     The scale goes from the least to the largest values of those points.
     """
-    best = moocore.filter_dominated(np.vstack(fronts))
-    least = best.min(axis=0)
-    extent = np.ptp(best, axis=0)
-    whole = area((best - least) / extent)
-    return [100 * (1 - area((points - least) / extent) / whole) for points in fronts]
+    scaled, best = scaled_by_best(fronts)
+    whole = area(best)
+    return [100 * (1 - area(points) / whole) for points in scaled]
 
 
 def best_known(points: Array) -> float:
