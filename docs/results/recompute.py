@@ -954,17 +954,15 @@ def lines_over(
 
 
 def tuned(results: Results) -> list[dict[str, Any]]:
-    """Default and tuned settings by cell and method on the moves of testing, and what was tried."""
-    path = results.folder / "tuning.csv"
-    if not path.exists():
-        return []
-    with path.open(newline="") as file:
-        trials = list(csv.DictReader(file))
+    """Default and tuned settings by cell and method on the moves of testing, and what was tried.
+
+    Holm's p is over all methods of all cells.
+    """
     figures = list[dict[str, Any]]()
-    for cell, method in dict.fromkeys((trial["cell"], trial["method"]) for trial in trials):
-        tried = [trial for trial in trials if (trial["cell"], trial["method"]) == (cell, method)]
-        best = min(tried, key=lambda trial: float(trial["score"]))
-        row = next(row for row in ROWS if row.name == ("smooth" if cell == "centre" else cell))
+    for (cell, method), tried in trials_of(results.folder).items():
+        best = best_trial(tried)
+        row = row_of_cell(cell)
+        label = tuned_label(method, best, row)
         figures.append(
             {
                 "cell": cell,
@@ -974,69 +972,160 @@ def tuned(results: Results) -> list[dict[str, Any]]:
                 "default_score": 10 ** float(tried[0]["score"]),
                 "best_score": 10 ** float(best["score"]),
                 "settings": json.loads(best["settings"]),
-                **on_testing(results, row, method),
+                **on_testing(results, row, method, label),
             }
         )
     for measure in MEASURES:
-        rows = [row[measure] for row in figures if measure in row]
-        for row, p in zip(rows, holm([row["p"] for row in rows]), strict=True):
-            row["holm"] = p
+        adjust([row[measure] for row in figures if measure in row])
     return figures
 
 
-def on_testing(results: Results, row: Row, method: str) -> dict[str, Any]:
+def both_tuned(results: Results) -> list[dict[str, Any]]:
+    """Every search against SLSQP in its cell, both with default settings and both tuned.
+
+    Holm's p is over all of these with default settings, and over all of them tuned.
+    """
+    figures = list[dict[str, Any]]()
+    label_of = {
+        (cell, method): tuned_label(method, best_trial(tried), row_of_cell(cell))
+        for (cell, method), tried in trials_of(results.folder).items()
+    }
+    for (cell, method), label in label_of.items():
+        rival = label_of.get((cell, DIFFERENCES))
+        if method == DIFFERENCES or rival is None:
+            continue
+        row = row_of_cell(cell)
+        pairs = {
+            "default": (usual_in(results, row, method), usual_in(results, row, DIFFERENCES)),
+            "tuned": (label, rival),
+        }
+        labels = [name for pair in pairs.values() for name in pair]
+        problems = tested_on(results, row, labels)
+        if problems:
+            of_pairs = {
+                name: held_against(results, row, pair, problems, "between")
+                for name, pair in pairs.items()
+            }
+            figures.append({"cell": cell, "method": method, "problems": len(problems), **of_pairs})
+    for name in ("default", "tuned"):
+        adjust([row[name] for row in figures])
+    return figures
+
+
+def adjust(tests: Sequence[dict[str, Any]]) -> None:
+    """Give tests Holm's p over all of them."""
+    for test, p in zip(tests, holm([test["p"] for test in tests]), strict=True):
+        test["holm"] = p
+
+
+def trials_of(folder: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
+    """The trials by cell and method, in their order; none without their table."""
+    path = folder / "tuning.csv"
+    trials = defaultdict[tuple[str, str], list[dict[str, str]]](list)
+    if path.exists():
+        with path.open(newline="") as file:
+            for trial in csv.DictReader(file):
+                trials[trial["cell"], trial["method"]].append(trial)
+    return trials
+
+
+def best_trial(trials: Sequence[Mapping[str, str]]) -> Mapping[str, str]:
+    """The trial of the least score, the first of equals."""
+    return min(trials, key=lambda trial: float(trial["score"]))
+
+
+def row_of_cell(cell: str) -> Row:
+    """The row of the first table that rests on a cell."""
+    return next(row for row in ROWS if row.name == ("smooth" if cell == "centre" else cell))
+
+
+def tuned_label(method: str, trial: Mapping[str, str], row: Row) -> str:
+    """The label of runs with a trial's settings."""
+    settings = dict(sorted(json.loads(trial["settings"]).items()))
+    again = settings.pop("reevaluate", 1)
+    words = [f"{name}={value}" for name, value in settings.items()]
+    words += [f"reevaluate={again}"] if again > 1 else []
+    return " ".join([method, *words, *filter(None, [row.noise])])
+
+
+def usual_in(results: Results, row: Row, method: str) -> str:
+    """The label of a method in a row of the first table: its best one on the first seeds."""
+    problems_of = {kind: results.problems(kind=kind) for kind in row.kinds}
+    problems = [name for names in problems_of.values() for name in names]
+    labels = [
+        label
+        for label, _ in searches_in(results, row.axes, row.budget, problems, 5)
+        if label.partition(" ")[0] == method
+        and "continuation" not in label
+        and ("noise=" in label) == bool(row.noise)
+        and label.endswith(row.noise)
+    ]
+    return chosen_on_first(results, row, labels, problems_of)
+
+
+def tested_on(results: Results, row: Row, labels: Sequence[str]) -> list[str]:
+    """The problems of a row on which all of these were run."""
+    return [
+        name
+        for kind in row.kinds
+        for name in results.problems(kind=kind)
+        if all(results.of(label, row.budget, name) for label in labels)
+    ]
+
+
+def held_against(
+    results: Results, row: Row, pair: tuple[str, str], problems: Sequence[str], measure: str
+) -> dict[str, Any]:
+    """A method against another: gaps, on how many problems it is better, and Wilcoxon's p.
+
+    The test is over moves: of several kinds of problem a move's differences count as their mean.
+    """
+    ours, theirs = (
+        np.array(
+            [
+                results.median(results.of(label, row.budget, name), results.gap, measure)
+                for name in problems
+            ]
+        )
+        for label in pair
+    )
+    moves = np.array([Problem(name).move for name in problems])
+    differences = np.array([(ours - theirs)[moves == move].mean() for move in sorted(set(moves))])
+    return {
+        "first": float(np.median(ours)),
+        "second": float(np.median(theirs)),
+        "better": int((ours < theirs).sum()),
+        "difference": float(np.median(differences)),
+        "p": signed_ranks(differences),
+    }
+
+
+def on_testing(results: Results, row: Row, method: str, label: str) -> dict[str, Any]:
     """Default and tuned settings on the moves of testing, by measure; nothing where not run.
 
     Beside them the method that the row holds against this one, with the settings of the row.
     """
-    runs = [
-        run
-        for run in results.runs
-        if (run.axis, run.method, run.budget) == ("tuned", method, row.budget)
-        and ("noise=" in run.settings) == bool(row.noise)
-        and Problem(run.problem).kind in row.kinds
-    ]
-    if not runs:
+    if not tested_on(results, row, [label]):
         return {}
-    label = runs[-1].label
-    problems_of = {kind: results.problems(kind=kind) for kind in row.kinds}
-    problems = sorted({run.problem for run in runs if run.label == label})
-    labels = [
-        other
-        for other, _ in searches_in(results, row.axes, row.budget, problems, 5)
-        if other.partition(" ")[0] == method
-        and "continuation" not in other
-        and ("noise=" in other) == bool(row.noise)
-        and other.endswith(row.noise)
-    ]
-    usual = chosen_on_first(results, row, labels, problems_of)
+    usual = usual_in(results, row, method)
     of_row = judged(results, row)
     other = of_row["search"] if method == DIFFERENCES else of_row["rival"]
-    problems = [
-        name
-        for name in problems
-        if results.of(usual, row.budget, name) and results.of(other, row.budget, name)
-    ]
+    problems = tested_on(results, row, [label, usual, other])
+    if not problems:
+        return {}
     figures: dict[str, Any] = {"usual": usual, "other": other}
     for measure in MEASURES:
-        default, better, against = (
-            np.array(
-                [
-                    results.median(results.of(name, row.budget, problem), results.gap, measure)
-                    for problem in problems
-                ]
-            )
-            for name in (usual, label, other)
-        )
+        of_default = held_against(results, row, (label, usual), problems, measure)
+        of_other = held_against(results, row, (label, other), problems, measure)
         figures[measure] = {
             "moves": len(problems),
-            "default": float(np.median(default)),
-            "tuned": float(np.median(better)),
-            "nearer": int((better < default).sum()),
-            "p": signed_ranks(better - default),
-            "other": float(np.median(against)),
-            "nearer_than_other": int((better < against).sum()),
-            "p_other": signed_ranks(better - against),
+            "default": of_default["second"],
+            "tuned": of_default["first"],
+            "nearer": of_default["better"],
+            "p": of_default["p"],
+            "other": of_other["second"],
+            "nearer_than_other": of_other["better"],
+            "p_other": of_other["p"],
         }
     return figures
 
@@ -1563,6 +1652,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "large": both(results, centre, searches_in(results, ("large",), 100_000, centre, 3)),
         "million": million(results),
         "tuned": tuned(results),
+        "both_tuned": both_tuned(results),
         "kinds": kind_figures(results),
         "noise": noise_figures(results),
         "limits": limit_figures(results),

@@ -144,6 +144,55 @@ def test_first_seeds_choose_and_fresh_ones_judge():
     assert (line["take"], line["better"]) == ("`slsqp`", "10/10")
 
 
+def test_tuned_settings_are_run_under_the_label_by_which_the_figures_find_them():
+    """Evaluations of a candidate are tuned as a setting is, and are an argument of the run."""
+    settings = {"scale": 0.5, "reevaluate": 3, "population": 30}
+    tuned_settings = {("noise", "moead-de"): tuple(sorted(settings.items()))}
+    entry = next(plan.tuned(DRAWN[:1], DRAWN[:1], tuned_settings, 0))
+    assert (entry.reevaluate, entry.noise) == (3, 0.01)
+    assert dict(entry.settings) == {"population": 30, "scale": 0.5}
+    trial = {"score": "0.1", "settings": json.dumps(settings)}
+    label = recompute.tuned_label("moead-de", trial, recompute.row_of_cell("noise"))
+    assert label == f"moead-de {entry.words}"
+
+
+def test_tuned_methods_are_held_against_each_other_over_moves(tmp_path):
+    """Four kinds of limit on a move are one move: p cannot be less than five moves can give."""
+    (tmp_path / "tuning.csv").write_text(
+        "cell,method,budget,trial,score,settings\n"
+        'limits,gde3,5000,0,1,"{""population"": 100}"\n'
+        'limits,gde3,5000,1,0,"{""population"": 30}"\n'
+        'limits,slsqp,5000,0,1,"{""step"": 1e-06}"\n'
+    )
+    gaps = {
+        ("epsilon", "points=50"): 0.0,
+        ("gde3", ""): 0.4,
+        ("gde3", "population=30"): 0.1,
+        ("slsqp", ""): 0.3,
+        ("slsqp", "step=1e-06"): 0.2,
+    }
+    results = recompute.Results.__new__(recompute.Results)
+    results.folder = tmp_path
+    results.runs = [
+        recompute.Run(
+            "tuned" if "=" in settings else "limits", f"single-link-m{move}-6-{kind}", method,
+            settings, 0 if method == "epsilon" else 10_000, 0, 1.0, 1.0,
+            points := np.array([[lacks, 0.0], [0.0, 1.0]]), points, np.empty((0, 3)),
+        )
+        for (method, settings), lacks in gaps.items()
+        for move in range(5)
+        for kind in recompute.OF_LIMITS
+    ]  # fmt: skip
+    results.gather()
+    (row,) = recompute.both_tuned(results)
+    assert (row["cell"], row["method"], row["problems"]) == ("limits", "gde3", 20)
+    assert (row["default"]["better"], row["tuned"]["better"]) == (0, 20)
+    assert row["tuned"]["holm"] == pytest.approx(recompute.least_p(5))
+    of_methods = {row["method"]: row["between"] for row in recompute.tuned(results)}
+    assert {name: row["nearer"] for name, row in of_methods.items()} == {"gde3": 20, "slsqp": 20}
+    assert of_methods["gde3"]["holm"] == pytest.approx(2 * recompute.least_p(5))
+
+
 @pytest.mark.parametrize(
     ("differences", "words"),
     [

@@ -366,8 +366,12 @@ def tuned(
     """Tuned settings in the cells where they were tuned, at the centre on all moves."""
     for (name, method), values in settings.items():
         cell = TUNED_CELLS[name]
+        again = int(dict(values).get("reevaluate", 1))
+        own_settings = tuple(value for value in values if value[0] != "reevaluate")
         for case in cell.to_test(tested if name == "centre" else balanced):
-            yield Planned("tuned", seed, case, method, cell.budget, values, cell.noise)
+            yield Planned(
+                "tuned", seed, case, method, cell.budget, own_settings, cell.noise, again
+            )
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:
