@@ -369,9 +369,7 @@ def tuned(
         again = int(dict(values).get("reevaluate", 1))
         own_settings = tuple(value for value in values if value[0] != "reevaluate")
         for case in cell.to_test(tested if name == "centre" else balanced):
-            yield Planned(
-                "tuned", seed, case, method, cell.budget, own_settings, cell.noise, again
-            )
+            yield Planned("tuned", seed, case, method, cell.budget, own_settings, cell.noise, again)
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:

@@ -106,7 +106,9 @@ def score(
             algorithm=method,
             bound=problem.bound,
             population=settings.get("population"),
-            settings={name: settings[name] for name in settings if name not in ("population", AGAIN)},
+            settings={
+                name: settings[name] for name in settings if name not in ("population", AGAIN)
+            },
             evaluations=cell.trials,
             seed=1000 + seed,
             noise=cell.noise,
