@@ -962,7 +962,7 @@ def tuned(results: Results) -> list[dict[str, Any]]:
     for (cell, method), tried in trials_of(results.folder).items():
         best = best_trial(tried)
         row = row_of_cell(cell)
-        label = tuned_label(method, best, row)
+        label = label_of_best(results, row, method, tried)
         figures.append(
             {
                 "cell": cell,
@@ -987,7 +987,7 @@ def both_tuned(results: Results) -> list[dict[str, Any]]:
     """
     figures = list[dict[str, Any]]()
     label_of = {
-        (cell, method): tuned_label(method, best_trial(tried), row_of_cell(cell))
+        (cell, method): label_of_best(results, row_of_cell(cell), method, tried)
         for (cell, method), tried in trials_of(results.folder).items()
     }
     for (cell, method), label in label_of.items():
@@ -1046,6 +1046,24 @@ def tuned_label(method: str, trial: Mapping[str, str], row: Row) -> str:
     words = [f"{name}={value}" for name, value in settings.items()]
     words += [f"reevaluate={again}"] if again > 1 else []
     return " ".join([method, *words, *filter(None, [row.noise])])
+
+
+def label_of_best(
+    results: Results, row: Row, method: str, trials: Sequence[Mapping[str, str]]
+) -> str:
+    """The label of the best trial's runs: those of the usual settings, where none was better.
+
+    The first trial has the usual settings; without noise they are not run again. A method with
+    fewer than eight trials is being tuned still.
+    """
+    best = best_trial(trials)
+    label = tuned_label(method, best, row)
+    is_usual = best is trials[0] and not row.noise and len(trials) >= 8
+    return (
+        usual_in(results, row, method)
+        if is_usual and not tested_on(results, row, [label])
+        else label
+    )
 
 
 def usual_in(results: Results, row: Row, method: str) -> str:
