@@ -152,6 +152,8 @@ def test_tuned_settings_are_run_under_the_label_by_which_the_figures_find_them()
     assert (entry.reevaluate, entry.noise) == (3, 0.01)
     assert dict(entry.settings) == {"population": 30, "scale": 0.5}
     trial = {"score": "0.1", "settings": json.dumps(settings)}
+    usual = {"crossover": 1.0, "mutation_eta": 20.0, "population": 100}
+    assert not list(plan.tuned([], DRAWN[:1], {("limits", "moead-de"): tuple(usual.items())}, 0))
     label = recompute.tuned_label("moead-de", trial, recompute.row_of_cell("noise"))
     assert label == f"moead-de {entry.words}"
 
@@ -162,14 +164,19 @@ def test_tuned_methods_are_held_against_each_other_over_moves(tmp_path):
         "cell,method,budget,trial,score,settings\n"
         'limits,gde3,5000,0,1,"{""population"": 100}"\n'
         'limits,gde3,5000,1,0,"{""population"": 30}"\n'
-        'limits,slsqp,5000,0,1,"{""step"": 1e-06}"\n'
+        'limits,slsqp,5000,0,1,"{""step"": 1e-05}"\n'
+        + "".join(
+            f'limits,moead-de,5000,{trial},{trial},"{{""population"": {100 - trial}}}"\n'
+            for trial in range(8)
+        )
     )
     gaps = {
         ("epsilon", "points=50"): 0.0,
         ("gde3", ""): 0.4,
         ("gde3", "population=30"): 0.1,
         ("slsqp", ""): 0.3,
-        ("slsqp", "step=1e-06"): 0.2,
+        ("slsqp", "step=1e-05"): 0.2,
+        ("moead-de", ""): 0.45,
     }
     results = recompute.Results.__new__(recompute.Results)
     results.folder = tmp_path
@@ -184,12 +191,18 @@ def test_tuned_methods_are_held_against_each_other_over_moves(tmp_path):
         for kind in recompute.OF_LIMITS
     ]  # fmt: skip
     results.gather()
-    (row,) = recompute.both_tuned(results)
+    row, of_usual = recompute.both_tuned(results)
     assert (row["cell"], row["method"], row["problems"]) == ("limits", "gde3", 20)
     assert (row["default"]["better"], row["tuned"]["better"]) == (0, 20)
-    assert row["tuned"]["holm"] == pytest.approx(recompute.least_p(5))
+    assert row["tuned"]["holm"] == pytest.approx(2 * recompute.least_p(5))
+    # no trial is better than the first one, which has the usual settings and their runs
+    assert (of_usual["method"], of_usual["tuned"]["first"]) == (
+        "moead-de", of_usual["default"]["first"],
+    )  # fmt: skip
     of_methods = {row["method"]: row["between"] for row in recompute.tuned(results)}
-    assert {name: row["nearer"] for name, row in of_methods.items()} == {"gde3": 20, "slsqp": 20}
+    assert {name: row["nearer"] for name, row in of_methods.items()} == {
+        "gde3": 20, "slsqp": 20, "moead-de": 0,
+    }  # fmt: skip
     assert of_methods["gde3"]["holm"] == pytest.approx(2 * recompute.least_p(5))
 
 
