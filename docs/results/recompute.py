@@ -1019,14 +1019,14 @@ def adjust(tests: Sequence[dict[str, Any]]) -> None:
 
 
 def trials_of(folder: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
-    """The trials by cell and method, in their order; none without their table."""
+    """The trials by cell and method, cells in the order of the first table's rows."""
     path = folder / "tuning.csv"
     trials = defaultdict[tuple[str, str], list[dict[str, str]]](list)
     if path.exists():
         with path.open(newline="") as file:
             for trial in csv.DictReader(file):
                 trials[trial["cell"], trial["method"]].append(trial)
-    return trials
+    return dict(sorted(trials.items(), key=lambda place: ROWS.index(row_of_cell(place[0][0]))))
 
 
 def best_trial(trials: Sequence[Mapping[str, str]]) -> Mapping[str, str]:
