@@ -43,7 +43,7 @@ from recomputing.one_axis import (
 )
 from recomputing.published import PAGES, differences, wrong_lines
 from recomputing.runs import read_runs
-from recomputing.tuning import tuned
+from recomputing.tuning import both_tuned, tuned
 
 
 def compute(folder: Path) -> dict[str, Any]:
@@ -72,6 +72,7 @@ def compute(folder: Path) -> dict[str, Any]:
         "large": both_measures(results, centre, large),
         "million": million(results),
         "tuned": tuned(results, folder),
+        "both_tuned": both_tuned(results, folder),
         "kinds": kind_figures(results),
         "noise": noise_figures(results),
         "limits": limit_figures(results),

@@ -41,12 +41,13 @@ from quietarm.views.pictures import grammar  # noqa: E402
 
 recompute = page.recompute_module(RESULTS)
 from recomputing.areas import area, best_known  # noqa: E402
-from recomputing.first_table import judged_rows  # noqa: E402
+from recomputing.first_table import OF_LIMITS, judged_rows  # noqa: E402
 from recomputing.further_axes import further_figures  # noqa: E402
 from recomputing.gaps import Results  # noqa: E402
 from recomputing.published import differences, other_lines, wrong_lines  # noqa: E402
 from recomputing.runs import Problem, Run, read_runs  # noqa: E402
 from recomputing.significance import holm, least_p, signed_ranks  # noqa: E402
+from recomputing.tuning import both_tuned, row_of_cell, tuned, tuned_label  # noqa: E402
 
 DRAWN = read_moves(RESULTS / "moves.csv")
 
@@ -175,65 +176,64 @@ def test_first_seeds_choose_and_fresh_ones_judge():
     assert (line["take"], line["better"]) == ("`slsqp`", "10/10")
 
 
-@pytest.mark.parametrize(
-    ("differences", "words"),
-    [
-        ((-1.0, -2.0, 0.0, 0.0), "`es`"),
-        ((-1.0, 0.0, 0.0, 0.0), "tentative: `es`"),
-        ((-1.0, -1.0, 1.0, 0.0), "tentative: `es`"),
-        ((1.0, 1.0, 1.0, 0.0), "`slsqp`"),
-        ((0.0, 0.0, 0.0, -0.1), "not significant: `slsqp`"),
-    ],
-)
-def test_a_row_of_several_kinds_is_sure_if_half_of_them_are(differences, words):
-    """A difference of at least one is significant here."""
-    tests = [{"difference": d, "holm": 0.01 if abs(d) >= 1 else 0.5} for d in differences]
-    row = {
-        "row": "limits",
-        "search": "es",
-        "rival": "slsqp",
-        "measure": "between",
-        "comparisons": [{"by": {"between": test}} for test in tests],
-    }
-    assert first_table.take_words(row, *first_table.verdict_of(row)) == words
+def test_tuned_settings_are_run_under_the_label_by_which_the_figures_find_them():
+    """Evaluations of a candidate are tuned as a setting is, and are an argument of the run."""
+    settings = {"scale": 0.5, "reevaluate": 3, "population": 30}
+    tuned_settings = {("noise", "moead-de"): tuple(sorted(settings.items()))}
+    entry = next(plan.tuned(DRAWN[:1], DRAWN[:1], tuned_settings, 0))
+    assert (entry.reevaluate, entry.noise) == (3, 0.01)
+    assert dict(entry.settings) == {"population": 30, "scale": 0.5}
+    trial = {"score": "0.1", "settings": json.dumps(settings)}
+    usual = {"crossover": 1.0, "mutation_eta": 20.0, "population": 100}
+    assert not list(plan.tuned([], DRAWN[:1], {("limits", "moead-de"): tuple(usual.items())}, 0))
+    label = tuned_label("moead-de", trial, row_of_cell("noise"))
+    assert label == f"moead-de {entry.words}"
 
 
-@pytest.mark.slow
-def test_a_new_machine_goes_on_from_the_tables_alone(tmp_path, planned):
-    shutil.copy(RESULTS / "moves.csv", tmp_path)
-    done = planned[:3]
-    rows = [
-        {**dict.fromkeys(packed.COLUMNS, ""), **dict(zip(packed.KEY, map(str, entry.key)))}
-        for entry in done
-    ]
-    packed.write_rows(rows, run.runs_path(tmp_path, done[0].axis))
-    assert run.missing_of(tmp_path) == planned[3:]
-
-
-@pytest.mark.slow
-def test_parts_share_the_plan(tmp_path, planned):
-    shutil.copy(RESULTS / "moves.csv", tmp_path)
-    parts = [run.missing_of(tmp_path, (number, 3)) for number in (1, 2, 3)]
-    assert sorted(entry.key for part in parts for entry in part) == sorted(
-        entry.key for entry in planned
+def test_tuned_methods_are_held_against_each_other_over_moves(tmp_path):
+    """Four kinds of limit on a move are one move: p cannot be less than five moves can give."""
+    (tmp_path / "tuning.csv").write_text(
+        "cell,method,budget,trial,score,settings\n"
+        'limits,gde3,5000,0,1,"{""population"": 100}"\n'
+        'limits,gde3,5000,1,0,"{""population"": 30}"\n'
+        'limits,slsqp,5000,0,1,"{""step"": 1e-05}"\n'
+        + "".join(
+            f'limits,moead-de,5000,{trial},{trial},"{{""population"": {100 - trial}}}"\n'
+            for trial in range(8)
+        )
     )
-
-
-@pytest.mark.parametrize(
-    ("typed", "words"),
-    [
-        (["--part", "5/4"], "part is '5/4'; give a number of how many, such as 2/4"),
-        (["--axis", "budgets"], "no axis is called 'budgets'; give one of centre,"),
-        (["--deciding", "rows"], "no row is called 'rows'; give one of centre,"),
-        (["--tune", "es", "--cell", "rows"], "no cell is called 'rows'; give one of centre,"),
-    ],
-)
-def test_what_cannot_be_is_refused_in_a_line(tmp_path, capsys, typed, words):
-    with pytest.raises(SystemExit) as stopped:
-        crossover.main([str(tmp_path / "runs"), *typed])
-    assert stopped.value.code == 2
-    assert words in capsys.readouterr().err
-    assert not (tmp_path / "runs").exists()
+    gaps = {
+        ("epsilon", "points=50"): 0.0,
+        ("gde3", ""): 0.4,
+        ("gde3", "population=30"): 0.1,
+        ("slsqp", ""): 0.3,
+        ("slsqp", "step=1e-05"): 0.2,
+        ("moead-de", ""): 0.45,
+    }
+    runs = [
+        Run(
+            "tuned" if "=" in settings else "limits", f"single-link-m{move}-6-{kind}", method,
+            settings, 0 if method == "epsilon" else 10_000, 0, 1.0, 1.0,
+            points := np.array([[lacks, 0.0], [0.0, 1.0]]), points, np.empty((0, 3)),
+        )
+        for (method, settings), lacks in gaps.items()
+        for move in range(5)
+        for kind in OF_LIMITS
+    ]  # fmt: skip
+    results = Results(runs)
+    row, of_usual = both_tuned(results, tmp_path)
+    assert (row["cell"], row["method"], row["problems"]) == ("limits", "gde3", 20)
+    assert (row["default"]["better"], row["tuned"]["better"]) == (0, 20)
+    assert row["tuned"]["holm"] == pytest.approx(2 * least_p(5))
+    # no trial is better than the first one, which has the usual settings and their runs
+    assert (of_usual["method"], of_usual["tuned"]["first"]) == (
+        "moead-de", of_usual["default"]["first"],
+    )  # fmt: skip
+    of_methods = {row["method"]: row["between"] for row in tuned(results, tmp_path)}
+    assert {name: row["nearer"] for name, row in of_methods.items()} == {
+        "gde3": 20, "slsqp": 20, "moead-de": 0,
+    }  # fmt: skip
+    assert of_methods["gde3"]["holm"] == pytest.approx(2 * least_p(5))
 
 
 def test_tables_come_back_as_they_were_with_the_same_bytes(tmp_path):

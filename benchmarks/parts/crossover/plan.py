@@ -16,7 +16,7 @@ from quietarm.metaheuristics import PRESETS, Job
 from .limits import LIMITS
 from .moves import Move
 from .problems import CENTRE_FAMILY, CENTRE_TERMS, FAMILIES, INTEGERS, Case
-from .tuned_cells import TUNED_CELLS
+from .tuned_cells import TUNED_CELLS, TunedCell
 
 AXES = (
     "centre", "crossing", "limits", "few", "energy", "paper", "noise", "objectives", "large",
@@ -363,11 +363,28 @@ def further_of(axis: str, case: Case, seed: int) -> Iterator[Planned]:
 def tuned(
     tested: Sequence[Move], balanced: Sequence[Move], settings: Settings, seed: int
 ) -> Iterator[Planned]:
-    """Tuned settings in the cells where they were tuned, at the centre on all moves."""
+    """Tuned settings in the cells where they were tuned, at the centre on all moves.
+
+    Where no trial is better than the library's settings, their runs are those of the other axes.
+    """
     for (name, method), values in settings.items():
         cell = TUNED_CELLS[name]
+        if are_usual(method, cell, values):
+            continue
+        again = int(dict(values).get("reevaluate", 1))
+        own_settings = tuple(value for value in values if value[0] != "reevaluate")
         for case in cell.to_test(tested if name == "centre" else balanced):
-            yield Planned("tuned", seed, case, method, cell.budget, values, cell.noise)
+            yield Planned("tuned", seed, case, method, cell.budget, own_settings, cell.noise, again)
+
+
+def are_usual(method: str, cell: TunedCell, settings: Sequence[tuple[str, Any]]) -> bool:
+    """Return whether settings are those with which a method is run in a cell without noise."""
+    preset = PRESETS[method]
+    usual: dict[str, Any] = {setting.name: setting.default for setting in preset.settings}
+    usual["population"] = preset.population
+    if cell.budget <= BUDGETS[0]:
+        usual |= dict(SMALL_POPULATION)
+    return not cell.noise and all(usual[name] == value for name, value in settings)
 
 
 def large(tested: Sequence[Move], seed: int) -> Iterator[Planned]:

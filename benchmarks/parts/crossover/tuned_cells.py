@@ -54,6 +54,7 @@ TUNED_CELLS = {
     "centre": TunedCell(),
     "limits": TunedCell(limits=LIMITS),
     "limits-1000": TunedCell(1_000, 1_000, limits=LIMITS),
+    "limits-200": TunedCell(200, 200, limits=LIMITS),
     "jumps": TunedCell(kind="motor-map"),
     "noise": TunedCell(noise=0.01),
     "few-200": TunedCell(200, 200),

@@ -30,11 +30,16 @@ from .tuned_cells import TUNED_CELLS, TunedCell
 
 FLOOR = 1e-2
 """A missing hypervolume [%] that counts as least: a trial may come nearer than the quick front."""
+AGAIN = "reevaluate"
+"""Evaluations of a candidate among the settings: an argument of a search, for any method."""
 Space = dict[str, optuna.distributions.BaseDistribution]
 
 
-def space_of(method: str) -> Space:
-    """Return what is tuned, and its ranges: settings of `quietarm list METHOD`."""
+def space_of(method: str, cell: TunedCell) -> Space:
+    """Return what is tuned, and its ranges: settings of `quietarm list METHOD`.
+
+    And the evaluations of a candidate, where a cell has noise.
+    """
     share = optuna.distributions.FloatDistribution(0.0, 1.0)
     eta = optuna.distributions.FloatDistribution(1.0, 60.0, log=True)
     population = optuna.distributions.IntDistribution(12, 200, log=True)
@@ -56,23 +61,31 @@ def space_of(method: str) -> Space:
         "step": optuna.distributions.FloatDistribution(1e-7, 0.3, log=True),
         "first": optuna.distributions.IntDistribution(2, 60, log=True),
         "differences": share,
+        "training": optuna.distributions.IntDistribution(40, 150, log=True),
+        "pool": optuna.distributions.IntDistribution(100, 1_000, log=True),
     }
     tuned = {name: known[name] for name in known if name in names}
-    return tuned if PRESETS[method].population == 1 else {"population": population, **tuned}
+    if PRESETS[method].population > 1:
+        tuned = {"population": population, **tuned}
+    if cell.noise:
+        tuned[AGAIN] = optuna.distributions.IntDistribution(1, 10, log=True)
+    return tuned
 
 
-def defaults_of(method: str, budget: int) -> dict[str, Any]:
+def defaults_of(method: str, cell: TunedCell) -> dict[str, Any]:
     """The library's settings of what is tuned; what has no value is in the middle of its range.
 
     Of few candidates the population is the small one of the map.
     """
     preset = PRESETS[method]
     values = {setting.name: setting.default for setting in preset.settings}
-    small = dict(SMALL_POPULATION) if budget <= BUDGETS[0] else {}
+    small = dict(SMALL_POPULATION) if cell.budget <= BUDGETS[0] else {}
     stated = {"population": preset.population, **small} if preset.population > 1 else {}
-    for name in space_of(method):
+    for name in space_of(method, cell):
         value = values.get(name)
-        if value is not None:
+        if name == AGAIN:
+            stated[name] = 1
+        elif value is not None:
             stated[name] = value
         elif name != "population":
             stated[name] = 1 / 6 if name == "mutation_gene" else 0.5
@@ -93,10 +106,13 @@ def score(
             algorithm=method,
             bound=problem.bound,
             population=settings.get("population"),
-            settings={name: value for name, value in settings.items() if name != "population"},
+            settings={
+                name: settings[name] for name in settings if name not in ("population", AGAIN)
+            },
             evaluations=cell.trials,
             seed=1000 + seed,
             noise=cell.noise,
+            reevaluate=settings.get(AGAIN, 1),
         )
         whole = area(scale.stations)
         lacks.append(100 * (1 - area(scale.scaled(objectives(front))) / whole))
@@ -112,17 +128,20 @@ def tune(
     table = read_trials(path)
     rows = table[(table["method"] == method) & (table["cell"] == name)]
     optuna.logging.set_verbosity(optuna.logging.WARNING)
-    sampler = optuna.samplers.TPESampler(seed=52 + len(rows))
+    # of few trials only a third is drawn at random before the sampler learns
+    sampler = optuna.samplers.TPESampler(seed=52 + len(rows), n_startup_trials=min(10, trials // 3))
     study = optuna.create_study(sampler=sampler)
-    space = space_of(method)
+    space = space_of(method, cell)
     for row in rows.itertuples():
+        # a table of before has no evaluations of a candidate: they were 1
+        known = {AGAIN: 1} if AGAIN in space else {}
         study.add_trial(
             optuna.trial.create_trial(
-                params=json.loads(row.settings), distributions=space, value=row.score
+                params=known | json.loads(row.settings), distributions=space, value=row.score
             )
         )
     if not len(rows):
-        study.enqueue_trial(defaults_of(method, cell.budget))
+        study.enqueue_trial(defaults_of(method, cell))
     for number in range(len(rows), trials):
         trial = study.ask(space)
         settings = dict(trial.params)
