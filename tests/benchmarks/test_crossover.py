@@ -236,6 +236,67 @@ def test_tuned_methods_are_held_against_each_other_over_moves(tmp_path):
     assert of_methods["gde3"]["holm"] == pytest.approx(2 * least_p(5))
 
 
+@pytest.mark.parametrize(
+    ("differences", "words"),
+    [
+        ((-1.0, -2.0, 0.0, 0.0), "`es`"),
+        ((-1.0, 0.0, 0.0, 0.0), "tentative: `es`"),
+        ((-1.0, -1.0, 1.0, 0.0), "tentative: `es`"),
+        ((1.0, 1.0, 1.0, 0.0), "`slsqp`"),
+        ((0.0, 0.0, 0.0, -0.1), "not significant: `slsqp`"),
+    ],
+)
+def test_a_row_of_several_kinds_is_sure_if_half_of_them_are(differences, words):
+    """A difference of at least one is significant here."""
+    tests = [{"difference": d, "holm": 0.01 if abs(d) >= 1 else 0.5} for d in differences]
+    row = {
+        "row": "limits",
+        "search": "es",
+        "rival": "slsqp",
+        "measure": "between",
+        "comparisons": [{"by": {"between": test}} for test in tests],
+    }
+    assert first_table.take_words(row, *first_table.verdict_of(row)) == words
+
+
+@pytest.mark.slow
+def test_a_new_machine_goes_on_from_the_tables_alone(tmp_path, planned):
+    shutil.copy(RESULTS / "moves.csv", tmp_path)
+    done = planned[:3]
+    rows = [
+        {**dict.fromkeys(packed.COLUMNS, ""), **dict(zip(packed.KEY, map(str, entry.key)))}
+        for entry in done
+    ]
+    packed.write_rows(rows, run.runs_path(tmp_path, done[0].axis))
+    assert run.missing_of(tmp_path) == planned[3:]
+
+
+@pytest.mark.slow
+def test_parts_share_the_plan(tmp_path, planned):
+    shutil.copy(RESULTS / "moves.csv", tmp_path)
+    parts = [run.missing_of(tmp_path, (number, 3)) for number in (1, 2, 3)]
+    assert sorted(entry.key for part in parts for entry in part) == sorted(
+        entry.key for entry in planned
+    )
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        (["--part", "5/4"], "part is '5/4'; give a number of how many, such as 2/4"),
+        (["--axis", "budgets"], "no axis is called 'budgets'; give one of centre,"),
+        (["--deciding", "rows"], "no row is called 'rows'; give one of centre,"),
+        (["--tune", "es", "--cell", "rows"], "no cell is called 'rows'; give one of centre,"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_line(tmp_path, capsys, typed, words):
+    with pytest.raises(SystemExit) as stopped:
+        crossover.main([str(tmp_path / "runs"), *typed])
+    assert stopped.value.code == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "runs").exists()
+
+
 def test_tables_come_back_as_they_were_with_the_same_bytes(tmp_path):
     row = {name: f"{number} 0.5" for number, name in enumerate(packed.COLUMNS)} | {"seed": "3"}
     other = row | {"seed": "1"}
