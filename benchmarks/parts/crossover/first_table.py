@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .words import p_value, short_label, two_digits, without_noise
+from .words import bold, p_value, short_label, two_digits, without_noise
 
 LEVEL = 0.05
 TITLES = {
@@ -31,6 +31,8 @@ INDICATORS = {
     "epsilon": "additive epsilon",
     "energy": "energy within 1 mm",
 }
+OF_RIVAL = {"epsilon": "gradient", "slsqp": "slsqp"}
+"""The table's column of each rival."""
 Row = Mapping[str, Any]
 
 
@@ -50,12 +52,17 @@ def line_of(row: Row, of_values: str) -> dict[str, str]:
     slsqp = range_of(one["control"] for one in comparisons)
     if row["rival"] == "epsilon":  # it sees what SLSQP cannot; of the same moves SLSQP's gap
         slsqp = of_values if row["row"] == "model" else "-"
-    return {
-        "title": TITLES[row["row"]],
-        "take": take_words(row, winner, is_sure),
+    cells = {
         "search": f"{range_of(one['missing'] for one in comparisons)} ({label_of(row)})",
         "slsqp": slsqp,
         "gradient": range_of(one["gradient"] for one in comparisons),
+    }
+    taken = "search" if winner == "search" else OF_RIVAL[row["rival"]]
+    cells[taken] = bold(cells[taken])
+    return {
+        "title": TITLES[row["row"]],
+        "take": take_words(row, winner, is_sure),
+        **cells,
         "better": f"{better if winner == 'search' else problems - better}/{problems}",
         "equal": str(sum(one["equal"] for one in comparisons)),
         "p": p_words(row),
@@ -105,7 +112,8 @@ def p_words(row: Row) -> str:
     clear = [kind_of(row, one) for one in comparisons if is_clear(by_test(row, one))]
     if len(clear) == len(comparisons):
         return f"< {LEVEL} for all"
-    return f"< {LEVEL}: {'; '.join(clear)}" if clear else f"> {LEVEL}"
+    kinds = f"{len(clear)} of {len(comparisons)} ({'; '.join(clear)})"
+    return f"< {LEVEL} for {kinds}" if clear else f"> {LEVEL}"
 
 
 def kind_of(row: Row, comparison: Row) -> str:

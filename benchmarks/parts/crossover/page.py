@@ -29,11 +29,13 @@ from .run import plan_table
 from .tables import write_table
 from .verdicts import verdicts
 from .words import (
+    bold,
     capitalised,
     p_value,
     short_label,
     signed,
     spelled_budget,
+    thousands,
     two_digits,
     without_noise,
 )
@@ -100,6 +102,8 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         signed=signed,
         without_noise=without_noise,
         capitalised=capitalised,
+        thousands=thousands,
+        bold=bold,
     )
     moves = pd.read_csv(results / "moves.csv")
     return environment.get_template(template).render(

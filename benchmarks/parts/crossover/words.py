@@ -77,6 +77,16 @@ def p_value(value: float | None) -> str:
     return f"{value:.2g}" if value >= 1e-4 else "< 0.0001"
 
 
+def thousands(count: int) -> str:
+    """A count with a comma between its thousands."""
+    return f"{count:,}"
+
+
+def bold(words: str) -> str:
+    """Words in bold letters of Markdown; a dash stays as it is."""
+    return words if words == "-" else f"**{words}**"
+
+
 def capitalised(words: str) -> str:
     """Return words with a capital letter first; all others stay as they are."""
     return words[:1].upper() + words[1:]
