@@ -105,15 +105,14 @@ def take_words(row: Row, winner: str, is_sure: bool) -> str:
 
 
 def p_words(row: Row) -> str:
-    """Return the adjusted p, or of several kinds of problem those with a significant difference."""
+    """Return the adjusted p, or of how many kinds of problem the difference is significant."""
     comparisons = row["comparisons"]
     if len(comparisons) == 1:
         return p_value(by_test(row, comparisons[0])["holm"])
-    clear = [kind_of(row, one) for one in comparisons if is_clear(by_test(row, one))]
+    clear = [one for one in comparisons if is_clear(by_test(row, one))]
     if len(clear) == len(comparisons):
         return f"< {LEVEL} for all"
-    kinds = f"{len(clear)} of {len(comparisons)} ({'; '.join(clear)})"
-    return f"< {LEVEL} for {kinds}" if clear else f"> {LEVEL}"
+    return f"< {LEVEL} for {len(clear)} of {len(comparisons)}" if clear else f"> {LEVEL}"
 
 
 def kind_of(row: Row, comparison: Row) -> str:
