@@ -344,7 +344,7 @@ def test_a_surrogate_of_many_candidates_stays_near_the_front_though_it_forgets_w
 
 
 def test_a_surrogate_of_few_candidates_asks_for_those_of_before():
-    # of version 2.1.0; packed runs of 200 candidates rest on it
+    # from version 2.1.0: packed runs of 200 candidates have to be those of a new run
     last = asked_by_a_surrogate(wavy, 50, training=20)[-2:]
     before = [
         [-0.5021024931636475, 2.302636404860391, -4.095006981090488, -4.897832508435585],
