@@ -6,6 +6,11 @@ optimistic values (mean less one standard deviation) add the most hypervolume, t
 keeps the limits. Of more than two objectives a random weighted Chebyshev norm stands in place of
 the hypervolume [1]_.
 
+A model knows the evaluated candidates nearest to the front, at most `training` of them. Beside the
+others its values are optimistic guesses, however bad those candidates were. A search of more than
+`ALONE` candidates would spend most of them there, so it chooses only among random candidates whose
+nearest evaluated one is known.
+
 References
 ----------
 .. [1] Knowles, IEEE Transactions on Evolutionary Computation 10, 2006, pp. 50-66.
@@ -24,6 +29,7 @@ from numpy.linalg import LinAlgError
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.optimize import minimize
+from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist
 from scipy.stats import norm, qmc
 from threadpoolctl import threadpool_limits
@@ -32,6 +38,11 @@ from quietarm.metaheuristics.evaluation.population import UNUSABLE
 
 Rows = NDArray[np.intp]
 Array = NDArray[np.float64]
+ALONE = 250
+"""Largest budget with which a model chooses one candidate, anywhere in the box.
+
+With a larger one it chooses several, and none beside a candidate that it does not know.
+"""
 
 
 class GaussianProcess:
@@ -142,7 +153,8 @@ def gaussian_process(
     Parameters
     ----------
     function, seed, budget
-        As of `SearchMethod.run`; of more than 250 candidates several are chosen by one model.
+        As of `SearchMethod.run`; with a budget of more than `ALONE` a model chooses several
+        candidates at once, beside those that it knows.
     training : int
         Most candidates that a model knows: those nearest to the front.
     pool : int
@@ -151,7 +163,7 @@ def gaussian_process(
     random = np.random.default_rng(seed)
     lower, upper = function.lower, function.upper
     size = len(lower)
-    together = ceil(budget / 250)
+    together = ceil(budget / ALONE)
     surrogate = Surrogate()
     U = qmc.LatinHypercube(size, rng=random).random(2 * size + 4)
     table, objectives = _values(function, lower + U * (upper - lower))
@@ -195,6 +207,8 @@ def _next(
         best = np.argsort(violation, kind="stable")[:5]
     known = _nearest_to(F, violation, best, training)
     rows = _pool(U, U[best], pool, random)
+    if together > 1:
+        rows = _beside(rows, U, known)
     means, deviations = surrogate.predict(U[known], table[known], rows)
     keeps = np.ones(len(rows))
     for column in range(objectives, table.shape[1]):
@@ -243,6 +257,13 @@ def _pool(U: Array, best: Array, count: int, random: np.random.Generator) -> Arr
     between = one * share + other * (1 - share)
     between = between + 0.02 * random.standard_normal(between.shape)
     return np.clip(np.vstack([near, random.random((count // 4, size)), between]), 0.0, 1.0)
+
+
+def _beside(rows: Array, U: Array, known: Rows) -> Array:
+    """Rows whose nearest evaluated candidate a model knows; all rows if there are none."""
+    nearest = KDTree(U).query(rows)[1]
+    beside = np.isin(nearest, known)
+    return rows[beside] if beside.any() else rows
 
 
 def _corner(F: Array, front: Array) -> Array:

@@ -7,6 +7,7 @@ import pytest
 
 import quietarm as qa
 from quietarm.metaheuristics import PRESETS, Job, MoveFunction, NamedProblem, run_jobs
+from quietarm.metaheuristics.run_search import default_of_function
 from quietarm.ocp import FunctionFront, NoTaskError
 from quietarm.studies.compare import compare_fronts
 
@@ -332,6 +333,47 @@ def test_a_surrogate_finds_with_few_candidates_what_others_do_not():
     comparison = compare_fronts(list(found.values()), fill=False)
     surrogate, population = (run.scores["hypervolume"] for run in comparison.runs)
     assert surrogate > population
+
+
+def wavy(x):
+    """Return two objectives whose sum is from 2 to 4 on the front, and above 100 in most places."""
+    way = np.sum(1 - np.cos(3 * x[1:])) + x[1:] @ x[1:]
+    return [x[0] ** 2 + way, (x[0] - 2) ** 2 + way]
+
+
+def asked_by_a_surrogate(function, evaluations, training):
+    asked = []
+
+    def kept(x):
+        asked.append(np.array(x))
+        return function(x)
+
+    qa.search(
+        kept, lower=[-5.0] * 4, upper=5.0, evaluations=evaluations, algorithm="gp", seed=2,
+        settings={"training": training, "pool": 100},
+    )  # fmt: skip
+    return np.array(asked[-evaluations:])
+
+
+def test_a_surrogate_of_many_candidates_stays_near_the_front_though_it_forgets_what_is_far():
+    late = asked_by_a_surrogate(wavy, 260, training=20)[160:]
+    assert np.median([sum(wavy(x)) for x in late]) < 10  # 123 in version 2.1.0
+
+
+def test_a_surrogate_of_few_candidates_asks_for_those_of_before():
+    # from version 2.1.0: packed runs of 200 candidates have to be those of a new run
+    last = asked_by_a_surrogate(wavy, 50, training=20)[-2:]
+    before = [
+        [-0.5021024931636475, 2.302636404860391, -4.095006981090488, -4.897832508435585],
+        [-3.660075983616302, 4.344788460787315, -2.958877044091226, 2.160049753317761],
+    ]
+    np.testing.assert_allclose(last, before, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("count", "method"), [(1_000, "gp"), (1_001, "moead-de")])
+def test_the_method_of_a_function_depends_on_the_number_of_candidates(count, method):
+    assert default_of_function(count) == method
+    assert default_of_function(count, needs_population=10) == "moead-de"
 
 
 def test_functions_equal_each_other_by_what_they_state():
