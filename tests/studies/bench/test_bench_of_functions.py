@@ -140,12 +140,3 @@ def test_what_makes_a_problem_of_a_function_is_said_in_a_line(ask, words):
 def test_a_cost_that_no_run_has_is_refused(results):
     with pytest.raises(ValueError, match="by is 'candidates'; give seconds or evaluations"):
         results.expected_running_time("my arm", "es", 0.5, by="candidates")
-
-
-@pytest.mark.slow
-def test_the_command_says_what_a_function_needs(call, tmp_path):
-    found().save(tmp_path / "own.json")
-    code, _, error = call(f"bench {tmp_path / 'own.json'} --output {tmp_path / 'bench'}")
-    assert code == 2
-    assert "own is a front of the function arm" in error
-    assert "NamedProblem.of_function" in error
