@@ -336,7 +336,7 @@ def _medians_by_problem(runs: Any, columns: list[str]) -> Any:
 
 
 def _between_over(runs: Any) -> dict[str, float]:
-    """What runs on moves lack with motions between their points, by its heading."""
+    """Return what runs on moves lack with motions between their points, by its heading."""
     medians = _medians_by_problem(runs, [_MISSING_BETWEEN])[_MISSING_BETWEEN]
     return {_BETWEEN: 100 * quartiles(medians)[1]}
 

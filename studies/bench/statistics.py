@@ -237,7 +237,7 @@ def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:
 
 
 def _move_of(problem: NamedProblem) -> object:
-    """What tells the move of a problem from others."""
+    """Return what tells the move of a problem from others."""
     task: Any = problem.task
     if not problem.is_move:
         return task

@@ -206,7 +206,7 @@ class _Asked:
 
 
 def _trouble(error: BaseException, words: str) -> BaseException:
-    """What stopped a search, with words on what is kept; its exit status stays."""
+    """Return what stopped a search, with words on what is kept; its exit status stays."""
     if isinstance(error, KeyboardInterrupt):
         return InterruptedCommandError(f"interrupted: {words}", error)
     if isinstance(error, ValueError):  # of the user's function, as a rule
