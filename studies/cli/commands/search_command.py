@@ -104,7 +104,10 @@ _BY_GRADIENT = {
                 "done."),
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
-    WORKERS, YES,
+    WORKERS,
+    option("--threads", default=1, help="Candidates that are evaluated at the same time in a "
+           "process, such as calls of --function that wait; of a move, blocks of them."),
+    YES,
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"},
                   formats=["front"]),
 )  # fmt: skip
@@ -132,7 +135,9 @@ def search(given: Given) -> None:
     from quietarm.metaheuristics.parallel import side_by_side
 
     asked = _function(given) if given.function else _move(given)
-    options = given.pick("population", "generations", "evaluations", "noise", "reevaluate") | {
+    options = given.pick(
+        "population", "generations", "evaluations", "noise", "reevaluate", "threads"
+    ) | {
         "settings": read_settings(given.settings),
         "start": None if given.start_front is None else load_front(given.start_front),
     }
@@ -256,7 +261,7 @@ def _move(given: Given) -> _Asked:
 _OF_FUNCTIONS = (
     "function", "lower", "upper", "objectives", "constraints", "method", "population",
     "generations", "evaluations", "noise", "reevaluate", "settings", "seed", "runs", "start_front",
-    "workers", "yes", "output", "quiet", "plant_file",
+    "workers", "threads", "yes", "output", "quiet", "plant_file",
 )  # fmt: skip
 """Options that a function has."""
 

@@ -129,6 +129,8 @@ def test_a_front_of_a_function_is_saved_loaded_compared_and_written_as_a_table(t
     loaded = qa.Front.load(tmp_path / "front.json")
     assert loaded == fronts[0]
     assert isinstance(loaded, FunctionFront)
+    count = len(loaded.points)
+    assert repr(loaded) == f"<FunctionFront by moead-de: {count} points of 100 candidates>"
     loaded.save_csv(tmp_path / "front.csv")
     assert (tmp_path / "front.csv").read_text().startswith("residual_m,energy_J,a_1,a_2\n")
     comparison = compare_fronts([loaded, fronts[1]])

@@ -8,9 +8,8 @@ import pytest
 
 import quietarm as qa
 from quietarm.metaheuristics import Job, NamedProblem, problem_of, run_jobs
-from quietarm.studies.bench import Results, bench_report
+from quietarm.studies.bench import Results, bench_report, write_iohprofiler
 from quietarm.studies.bench.bench_page import brief_report
-from quietarm.studies.bench.iohprofiler import write_iohprofiler
 
 BOX = {"lower": [-1.0, -1.0], "upper": 1.0}
 NAMES = {"objectives": ["sway", "cost"], "units": ["mm", ""], "constraints": ["wall"]}
