@@ -115,6 +115,11 @@ class Ranking:
     left_out: tuple[str, ...]
 
     @property
+    def has_power(self) -> bool:
+        """Return whether any two mean ranks could differ by the critical difference."""
+        return self.critical < len(self.methods) - 1
+
+    @property
     def best(self) -> tuple[str, ...]:
         """The first method and those not significantly different from it."""
         near = (rank - self.ranks[0] <= self.critical for rank in self.ranks)
@@ -228,7 +233,7 @@ def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array
 def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:
     """Problems by move: those of one plant, angle and duration are not independent.
 
-    A function is a move of its own.
+    Each function counts as a move of its own.
     """
     moves: dict[object, list[NamedProblem]] = {}
     for problem in problems:
@@ -238,9 +243,9 @@ def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:
 
 def _move_of(problem: NamedProblem) -> object:
     """Return what tells the move of a problem from others."""
-    task: Any = problem.task
     if not problem.is_move:
-        return task
+        return problem.name
+    task = problem.task
     return task.plant, round(task.start, 9), round(task.target, 9), round(task.duration, 9)
 
 

@@ -71,6 +71,21 @@ def test_a_function_has_every_measure_but_those_of_motions(results, tmp_path):
     assert list(brief) == ["method", "runs", "hypervolume gap [%]", "p", "seconds"]
 
 
+def test_three_functions_rank_three_methods():
+    def moved(by):
+        return lambda x: arm(x + by)
+
+    problems = [
+        NamedProblem.of_function(f"arm {by}", moved(by), **BOX, **NAMES, reference_front=found())
+        for by in (0.0, 0.1, 0.2)
+    ]
+    jobs = [Job(of, method, seed, 20) for of in problems for method in ("es", "gde3", "random")
+            for seed in (0, 1)]  # fmt: skip
+    page = bench_report(Results.of_jobs({job: job.run() for job in jobs}), "these lines").markdown()
+    assert "Mean ranks of the median hypervolume over 3 independent problems" in page
+    assert "By energy" not in page
+
+
 def test_a_run_of_a_function_is_written_for_iohprofiler(results, tmp_path):
     written, left_out = write_iohprofiler(results, tmp_path)
     assert (len(written), left_out) == (3, ())
