@@ -39,6 +39,10 @@ def crash(x):
     return parabolas(x), [x[0] - 9]
 crash.lower, crash.upper = [-5, -5], 5
 
+def never(x):
+    return parabolas(x), [1.0]
+never.lower, never.upper, never.constraints = [-5, -5], 5, ["wall"]
+
 number = 3
 """
 
@@ -63,6 +67,8 @@ def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder)
     asked = "search --function simulator.py:parabolas --method nsga2 --evaluations 60"
     code, _, err = call(f"{asked} {bounds} --from a.json --output b.json")
     assert code == 0, err
+    assert "residual" in err
+    assert " mm" not in err  # the function's own unit, as in the answer
     code, out, err = call(f"{line} --seed 1 --output c.json")
     assert code == 0, err
     code, out, err = call("compare a.json c.json")
@@ -121,6 +127,15 @@ def test_a_function_that_fails_keeps_the_candidates_until_then(call, folder):
     assert front.record.evaluations == 20
     assert front.objectives == ("way", "work")
     assert front.task.constraints == ("wall",)
+
+
+@pytest.mark.usefixtures("simulator")
+def test_where_nothing_is_feasible_no_hypervolume_is_said(call):
+    code, out, err = call("search --function simulator.py:never --evaluations 20 --method es")
+    assert (code, out) == (1, "")
+    assert "no point" in err
+    assert "20 of 20 candidates violate the constraints (wall)" in err
+    assert "area up to" not in err
 
 
 @pytest.mark.usefixtures("simulator")
