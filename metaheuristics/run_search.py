@@ -339,7 +339,7 @@ class SearchRun:
             usual = preset.generations
             if preset.is_function and start is not None:
                 raise ValueError(
-                    f"{method} cannot start from a front; leave that out (start, or --from)"
+                    f"{method} begins where its seed says; leave the front to start from out"
                 )
             if preset.is_function and evaluations is None:  # it knows no generations
                 evaluations = preset.generations if generations is None else generations
