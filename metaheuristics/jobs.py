@@ -30,7 +30,7 @@ from quietarm.metaheuristics.methods.user_method import (
 )
 from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
-from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of
+from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of, why_no_problem
 from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
 from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
 from quietarm.ocp import FileFormatError, Front, QuietarmError
@@ -49,7 +49,8 @@ class Job:
     Attributes
     ----------
     problem : NamedProblem
-        The problem, or the name of one of `PROBLEMS`.
+        The problem, or the name of one of `PROBLEMS`; of your own function
+        `NamedProblem.of_function`.
     method : str, pymoo Algorithm, AskTell or callable
         A search of `PRESETS`, alone or polished by the gradient (``"nsga2+polish"``); a method by
         the gradient, as ``"epsilon"`` or ``"weighted:ipopt"``; an algorithm of pymoo that was not
@@ -94,6 +95,8 @@ class Job:
         noise: float = 0.0,
         reevaluate: int = 1,
     ) -> None:
+        if not isinstance(problem, str | NamedProblem):
+            raise TypeError(why_no_problem("problem", problem))
         problem = problem_of(problem) if isinstance(problem, str) else problem
         share = noise_share(noise)
         named = NamedMethod.admitted(method, PRESETS) if isinstance(method, str) else None

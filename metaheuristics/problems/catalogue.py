@@ -26,12 +26,14 @@ from quietarm.ocp import (
     CycloidPolynomial,
     Front,
     JointProfile,
+    NoTaskError,
     PointToPoint,
     Uncertainty,
     epsilon_front,
     non_dominated,
 )
-from quietarm.ocp.checks import instance, takes, unknown
+from quietarm.ocp.checks import clipped, quoted, takes, unknown
+from quietarm.ocp.front.function_front import FunctionFront
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.limits import QUANTITIES
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, checked_objectives, peak_quantities
@@ -42,6 +44,11 @@ if TYPE_CHECKING:
     from quietarm.metaheuristics.problems.recorded import RecordedFunction
     from quietarm.metaheuristics.score import Reference
 
+_IN_PYTHON = (
+    "make NamedProblem.of_function('mine', function, reference_front=front) in Python "
+    "(docs/problems.md)"
+)
+"""What makes a problem of a user's own function."""
 FRONTS = Path(__file__).parent / "fronts"
 """The reference fronts, in a folder for each plant, where a problem with several has one of its
 own."""
@@ -110,11 +117,17 @@ class NamedProblem:
         reference_front : Front
             What runs are measured against, as the front of a long search: there is no gradient that
             would find it.
+
+        Raises
+        ------
+        ValueError
+            When the reference front has fewer than two points, or is of another function.
         """
         from quietarm.metaheuristics.problems.given_function import GivenFunction
 
         is_problem = isinstance(function, ProblemFunction)
         given: Any = function if is_problem else GivenFunction(function, **settings)
+        _refuse_other_reference(name, given, reference_front)
         return cls(
             name,
             given.task,
@@ -126,6 +139,18 @@ class NamedProblem:
         )
 
     @property
+    def is_move(self) -> bool:
+        """Return whether it is a move of a plant, and no function of a user's own."""
+        return self.given is None
+
+    @property
+    def box(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The least and the largest of each coefficient."""
+        if self.given is not None:
+            return self.given.lower, self.given.upper
+        return self.profile.box(self.bound)
+
+    @property
     def limited(self) -> bool:
         """Return whether candidates may break a limit or a constraint."""
         return bool(self.task.limits if self.given is None else self.given.constraints)
@@ -135,9 +160,14 @@ class NamedProblem:
     def of_front(cls, name: str, front: Front) -> NamedProblem:
         """The problem that a front solves, which becomes its reference front.
 
-        ValueError when the front states no bound, or has fewer than two points.
+        ValueError when the front states no bound, or has fewer than two points; NoTaskError of a
+        front of a function, which does not have the function: `of_function` takes both.
         """
-        instance("task", front.task, PointToPoint)  # a front of a function has none
+        if isinstance(front, FunctionFront):
+            raise NoTaskError(
+                f"{name} is a front of the function {clipped(front.function.name)}, and no file "
+                f"has the function itself; {_IN_PYTHON}"
+            )
         bound = front.record.bound or front.profile.default_bound
         if bound is None:
             raise ValueError(f"{name} states no bound; give a front that was found within one")
@@ -252,6 +282,33 @@ class NamedProblem:
         return front.coefficients, front.objective_values
 
 
+def _refuse_other_reference(name: str, function: ProblemFunction, front: Front) -> None:
+    """Refuse a reference front that is no scale for a function."""
+    if len(front.points) < 2:
+        raise ValueError(
+            f"the reference front of {name} has {len(front.points)} points; give that of "
+            "a longer search, with two or more"
+        )
+    own = {"coefficients": len(function.variables), "objectives": function.objectives}
+    its: dict[str, Any] = {
+        "coefficients": front.coefficients.shape[1],
+        "objectives": front.objectives,
+    }
+    if isinstance(front, FunctionFront):
+        own |= {"units": function.units, "constraints": function.constraints}
+        its |= {"units": front.function.units, "constraints": front.function.constraints}
+    for entry, value in own.items():
+        if its[entry] != value:
+            raise ValueError(
+                f"the reference front of {name} is of another function: its {entry} are "
+                f"{_words(its[entry])}, not {_words(value)}; give a front of this function"
+            )
+
+
+def _words(value: object) -> str:
+    return (", ".join(value) or "none") if isinstance(value, tuple) else str(value)
+
+
 @cache
 def _loaded(path: Path) -> Front:
     return Front.load(path)
@@ -307,11 +364,26 @@ def front_by_gradient(
 @interruptible
 def problem_of(name: str) -> NamedProblem:
     """A named problem, or a drawn one of docs/results; ValueError suggests the nearest one."""
+    if not isinstance(name, str):
+        raise TypeError(why_no_problem("name", name))
     if name in PROBLEMS:
         return PROBLEMS[name]
     if name in drawn_moves():
         return _drawn_problem(name)
     raise ValueError(unknown("problem", name, [*PROBLEMS, *drawn_moves()]))
+
+
+def why_no_problem(what: str, value: object) -> str:
+    """Say what to do with a function, or a front, that is given where a problem is named."""
+    if isinstance(value, NamedProblem):
+        return f"{what} is a NamedProblem; take it as it is"
+    if isinstance(value, FunctionFront):
+        return f"{what} is a front of a function; {_IN_PYTHON}"
+    if isinstance(value, Front):
+        return f"{what} is a front; give NamedProblem.of_front('mine', front)"
+    if callable(value):
+        return f"{what} is a function; {_IN_PYTHON}, with the front of a long search of it"
+    return f"{what} is {quoted(value)}; give a name of quietarm list problems, or a NamedProblem"
 
 
 @interruptible

@@ -328,6 +328,13 @@ class Front(Answer):
             objectives=names,
         )
 
+    def __repr__(self) -> str:
+        """Return its method and sizes: all of its points would fill pages."""
+        count = self.record.evaluations
+        candidates = f" of {count} candidates" if count else ""  # the gradient has none
+        name = type(self).__name__
+        return f"<{name} by {self.record.method}: {len(self.points)} points{candidates}>"
+
     def restated(self, **changes: Any) -> Front:
         """Return this front with other entries of its record."""
         return replace(self, record=replace(self.record, **changes))

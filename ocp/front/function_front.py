@@ -46,7 +46,7 @@ class FunctionEntries(Entries):
     believed: tuple[tuple[float, ...], ...] = field(default=(), metadata=IF_STATED)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FunctionFront(Front):
     """Non-dominated candidates of a user's own function, as `qa.search` finds them.
 

@@ -39,6 +39,10 @@ from quietarm.views.report.words import window_words
 SHOWN_TARGET = 0.1
 """Share of the hypervolume missing to which tables give the expected running time."""
 _ENERGY = "energy_1mm"
+_MISSING_BETWEEN = f"{MISSING}_between"
+_ENERGY_ABOVE = "energy above at 1 mm [%]"
+_BETWEEN = "with motions between [%]"
+"""What a run lacks with motions between its points."""
 _STILL = f"within {1e3 * LEVELS[0]:g} mm"
 """How many runs have so small a residual."""
 _P = "p"
@@ -55,6 +59,7 @@ def bench_report(
     Every picture and table is worked out from the runs alone.
     """
     problems = [problem.name for problem in results.problems]
+    moves = [problem.name for problem in results.moves]
     ranking = ranking_over(results)
     pairs = pd.concat(
         [
@@ -62,7 +67,7 @@ def bench_report(
                 {"problem": name, "measure": measure} | dict(pairs_on(results, name, measure))
             )
             for name in problems
-            for measure in compared_columns()
+            for measure in compared_columns(of_move=name in moves)
         ],
         ignore_index=True,
     )
@@ -101,6 +106,7 @@ def bench_report(
         "indicators": known_indicators(),
         "target": f"{100 * SHOWN_TARGET:g}",
         "moves": len(moves_of(results.problems)),
+        "functions": [name for name in problems if name not in moves],
         "verdicts": {name: verdict_on(results, name) for name in problems},
         "by_indicator": {
             name: {
@@ -109,7 +115,7 @@ def bench_report(
             }
             for name in problems
         },
-        "on_energy": {name: verdict_on(results, name, _ENERGY) for name in problems},
+        "on_energy": {name: verdict_on(results, name, _ENERGY) for name in moves},
         "windows": _windows(results),
         "energy_ranking": ranking_over(results, _ENERGY),
         "kruskal": {name: kruskal_on(results, name) for name in problems},
@@ -122,9 +128,12 @@ def bench_report(
     return Report(template, values, tables, figures)
 
 
-def compared_columns() -> list[str]:
-    """Columns of the runs that pairs of methods are tested on: every indicator, and the energy."""
-    return [*map(column_of, known_indicators().values()), _ENERGY]
+def compared_columns(*, of_move: bool = True) -> list[str]:
+    """Columns of the runs that pairs of methods are tested on: every indicator, and the energy.
+
+    The energy is of moves alone.
+    """
+    return [*map(column_of, known_indicators().values()), *([_ENERGY] if of_move else [])]
 
 
 def _others() -> list[Indicator]:
@@ -194,7 +203,7 @@ def brief_report(results: Results) -> Report:
     columns = ["method", "runs", GAP, _P, _STILL, "seconds"]
     names = [problem.name for problem in results.problems]
     tables: dict[str, Any] = {
-        name: problem_table(results, name)[columns].map(_rounded) for name in names
+        name: problem_table(results, name).filter(columns).map(_rounded) for name in names
     }
     verdicts = {name: verdict_on(results, name) for name in names}
     values = {
@@ -223,9 +232,9 @@ def _gap_words(gap: float) -> str:
 
 
 def _windows(results: Results) -> str:
-    """Residual windows of the problems; of which, where they differ."""
+    """Residual windows of the moves; of which, where they differ; empty without a move."""
     names: dict[str, list[str]] = {}
-    for problem in results.problems:
+    for problem in results.moves:
         names.setdefault(window_words(problem.task.residual_window), []).append(problem.name)
     if len(names) == 1:
         return next(iter(names))
@@ -253,11 +262,11 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
     rows = []
     table = results.table[results.table["problem"] == problem]
     p_values = p_against_best(results, problem)
+    is_move = any(problem == move.name for move in results.moves)
     for method, runs in table.groupby("method"):
         low, middle, high = (100 * share for share in quartiles(runs[MISSING]))
         time = results.expected_running_time(problem, str(method), SHOWN_TARGET)
         spent = {name: quartiles(runs[name])[1] for name in _COST}
-        still = np.isfinite(np.asarray(runs[ENERGIES[0]], dtype=float))
         rows.append(
             {
                 "method": bench_label(str(method)),
@@ -265,10 +274,9 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
                 GAP: middle,
                 "quartiles [%]": f"{low:.3g} to {high:.3g}",
                 _P: p_values.get(str(method)),
-                "with motions between [%]": 100 * quartiles(runs["missing_between"])[1],
+                **({_BETWEEN: 100 * quartiles(runs[_MISSING_BETWEEN])[1]} if is_move else {}),
                 **_medians(runs),
-                "energy above at 1 mm [%]": 100 * quartiles(runs["energy_1mm"])[1],
-                _STILL: f"{np.count_nonzero(still)} of {len(runs)}",
+                **(_energies_of(runs) if is_move else {}),
                 f"to {100 * SHOWN_TARGET:g} % [s]": interval_words(*time),
                 "candidates": spent["evaluations"],
                 "gradients": spent["gradients"],
@@ -279,6 +287,15 @@ def problem_table(results: Results, problem: str) -> pd.DataFrame:
     return _best_first(rows)
 
 
+def _energies_of(runs: Any) -> dict[str, Any]:
+    """The median energy of runs on a move, and how many came to rest, by headings."""
+    still = np.isfinite(np.asarray(runs[ENERGIES[0]], dtype=float))
+    return {
+        _ENERGY_ABOVE: 100 * quartiles(runs[_ENERGY])[1],
+        _STILL: f"{np.count_nonzero(still)} of {len(runs)}",
+    }
+
+
 def interval_words(value: float, low: float, high: float) -> str | None:
     """A value and its interval; None where it is infinite."""
     ends = f"{low:.3g} to {high:.3g}" if np.isfinite(high) else f"from {low:.3g}"
@@ -286,33 +303,51 @@ def interval_words(value: float, low: float, high: float) -> str | None:
 
 
 def summary_table(results: Results) -> pd.DataFrame:
-    """Every method over all problems: medians over problems of the medians over runs."""
+    """Every method over all problems: medians over problems of the medians over runs.
+
+    Of motions between points and of energies the moves count alone, and no functions.
+    """
     rows = []
+    moves = [move.name for move in results.moves]
     for method, runs in results.table.groupby("method"):
-        columns = [
-            *map(column_of, known_indicators().values()),
-            "missing_between",
-            _ENERGY,
-            *_COST,
-        ]
-        medians = runs.groupby("problem")[columns].agg(lambda column: quartiles(column)[1])
+        medians = _medians_by_problem(runs, [*map(column_of, known_indicators().values()), *_COST])
         over = {name: quartiles(medians[name])[1] for name in medians}
+        on_moves = runs[runs["problem"].isin(moves)]
         rows.append(
             {
                 "method": bench_label(str(method)),
                 "problems": len(medians),
                 "runs": len(runs),
                 GAP: 100 * over[MISSING],
-                "with motions between [%]": 100 * over["missing_between"],
+                **(_between_over(on_moves) if moves else {}),
                 **_medians(medians),
-                "energy above at 1 mm [%]": 100 * over["energy_1mm"],
-                f"{_STILL} [%]": 100 * float(np.mean(np.isfinite(runs[ENERGIES[0]]))),
+                **(_energies_over(on_moves) if moves else {}),
                 "candidates": over["evaluations"],
                 "gradients": over["gradients"],
                 "seconds": over["seconds"],
             }
         )
     return _best_first(rows)
+
+
+def _medians_by_problem(runs: Any, columns: list[str]) -> Any:
+    """The medians over the runs on each problem, a row a problem."""
+    return runs.groupby("problem")[columns].agg(lambda column: quartiles(column)[1])
+
+
+def _between_over(runs: Any) -> dict[str, float]:
+    """Return what runs on moves lack with motions between their points, by its heading."""
+    medians = _medians_by_problem(runs, [_MISSING_BETWEEN])[_MISSING_BETWEEN]
+    return {_BETWEEN: 100 * quartiles(medians)[1]}
+
+
+def _energies_over(runs: Any) -> dict[str, float]:
+    """The energy of runs on several moves, and the share that came to rest, by headings."""
+    still = np.isfinite(np.asarray(runs[ENERGIES[0]], dtype=float))
+    return {
+        _ENERGY_ABOVE: 100 * quartiles(_medians_by_problem(runs, [_ENERGY])[_ENERGY])[1],
+        f"{_STILL} [%]": 100 * float(np.mean(still)) if len(still) else np.nan,
+    }
 
 
 def _best_first(rows: list[dict[str, Any]]) -> pd.DataFrame:

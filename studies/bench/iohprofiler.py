@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 import quietarm
+from quietarm.interrupts import interruptible
 from quietarm.metaheuristics import NamedProblem
 from quietarm.ocp.files import write_whole
 from quietarm.studies.bench.results import Results, Run
@@ -31,6 +32,7 @@ FORMAT = "0.3.5"
 COLUMNS = ("evaluations", "raw_y", "seconds")
 
 
+@interruptible
 def write_iohprofiler(results: Results, folder: str | Path) -> tuple[list[Path], tuple[str, ...]]:
     """Write every method's runs on every problem, and return what was written and left out.
 

@@ -72,7 +72,7 @@ class Run:
         # 2e-4 to 9e-3 of it apart in the median, so that what a search finds between them is no
         # copy
         tolerated = 1e-5
-        lower, upper = self.problem.profile.box(self.problem.bound)
+        lower, upper = self.problem.box
         known = self.problem.reference().front.coefficients
         distances = [
             (np.abs(known - point) / (upper - lower)).max(axis=1).min()
@@ -154,6 +154,11 @@ class Results:
         """Problems that have runs, by name."""
         return tuple({run.problem.name: run.problem for run in self.runs}.values())
 
+    @property
+    def moves(self) -> tuple[NamedProblem, ...]:
+        """Problems that are moves, and no functions: these have energies within residuals."""
+        return tuple(problem for problem in self.problems if problem.is_move)
+
     @cached_property
     def methods(self) -> tuple[str, ...]:
         """Methods that have runs."""
@@ -170,15 +175,16 @@ class Results:
         Of every indicator less is better: ``missing`` is the share of the reference front's
         hypervolume that a run lacks, and there is a column for each of the others; ``energy_``
         columns are energies within a residual above the reference front's, as shares, NaN where the
-        run has none; beside them stand figures of a user's own, of the motions with these energies;
-        seconds are processor time, ``seconds`` of the search alone, ``all_seconds``
-        with builds and checks.
+        run has none; beside them stand figures of a user's own, of the motions with these energies.
+        These columns, and those of motions between points, are of moves alone: of a function they
+        are left out, and NaN beside moves. Seconds are processor time, ``seconds`` of the search
+        alone, ``all_seconds`` with builds and checks.
         """
         best = {
             problem.name: [problem.reference().front.least_energy(level) for level in LEVELS]
-            for problem in self.problems
+            for problem in self.moves
         }
-        return pd.DataFrame([_row(run, best[run.problem.name]) for run in self.runs])
+        return pd.DataFrame([_row(run, best.get(run.problem.name)) for run in self.runs])
 
     @cached_property
     def copies(self) -> list[Run]:
@@ -306,7 +312,8 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
             )
         problem = by_name[str(name)]
         if (front.task, front.profile) != (problem.task, problem.profile):
-            raise ValueError(f"a run of {method} is of another move than {name}")
+            what = "move" if problem.is_move else "function"
+            raise ValueError(f"a run of {method} is of another {what} than {name}")
         if front.record.bound != problem.bound:
             _refuse_beyond(front, problem)
             front = replace(front, history=front.history[-1:], entries=Entries())
@@ -316,7 +323,7 @@ def imported_runs(fronts: Sequence[Front], jobs: Sequence[Job]) -> list[Run]:
 
 def _refuse_beyond(front: Front, problem: NamedProblem) -> None:
     """Refuse a front with a point that is not within the problem's bounds."""
-    lower, upper = problem.profile.box(problem.bound)
+    lower, upper = problem.box
     table = front.coefficients
     for row, column in beyond(table, lower, upper):
         raise ValueError(
@@ -365,29 +372,29 @@ def told_apart(share: float) -> float:
     return round(share, 6) + 0.0
 
 
-def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
-    """The figures of a run; energies as shares above the best."""
+def _row(run: Run, best: Sequence[float] | None) -> dict[str, Any]:
+    """The figures of a run; energies as shares above the best, where the problem is a move."""
     front = run.front
     last = run.front.history[-1]
+    window = {} if best is None else {"residual_window_s": front.task.residual_window}
     row: dict[str, Any] = {
         "problem": run.problem.name,
         "method": run.method,
         "seed": front.record.seed,
-        "residual_window_s": front.task.residual_window,
+        **window,
         "points": len(front.points),
     }
+    scored = {"": run.scores}
+    if best is not None:  # motions between the points of a function would cost calls
+        scored["_between"] = run.scores_between
     for name, indicator in known_indicators().items():
         column = column_of(indicator)
         if column in row:
             raise ValueError(f"{column} is a column already; give the indicator another name")
-        for suffix, scores in (("", run.scores), ("_between", run.scores_between)):
+        for suffix, scores in scored.items():
             score = lacking(scores[name], indicator)
             row[f"{column}{suffix}"] = told_apart(score) if column == MISSING else score
-    for name, level, least in zip(ENERGIES, LEVELS, best):
-        row[name] = told_apart(front.least_energy(level) / least - 1)
-        figures = front.figures_within(level, FRONT)
-        at = name.removeprefix("energy_")
-        row |= {f"{column}_{at}": value for column, value in figures.items()}
+    row |= _energies(front, best or [])
     return row | {
         "evaluations": last.evaluations,
         "gradients": last.gradients,
@@ -395,3 +402,14 @@ def _row(run: Run, best: Sequence[float]) -> dict[str, Any]:
         "seconds": last.seconds,
         "all_seconds": front.record.seconds,
     }
+
+
+def _energies(front: Front, best: Sequence[float]) -> dict[str, float]:
+    """Energies within residuals as shares above the best, with figures of a user's own there."""
+    row = dict[str, float]()
+    for name, level, least in zip(ENERGIES, LEVELS, best):
+        row[name] = told_apart(front.least_energy(level) / least - 1)
+        figures = front.figures_within(level, FRONT)
+        at = name.removeprefix("energy_")
+        row |= {f"{column}_{at}": value for column, value in figures.items()}
+    return row

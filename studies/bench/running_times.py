@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from quietarm.ocp.checks import quoted
 from quietarm.ocp.escapes import csv_table
 from quietarm.ocp.files import write_whole
 
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Shares of the reference front's hypervolume that may be missing for a target to count as
 reached."""
+COSTS = ("seconds", "evaluations")
+"""What a running time counts."""
 
 
 class History(NamedTuple):
@@ -35,7 +38,9 @@ class History(NamedTuple):
     evaluations: Array
 
     def cost(self, by: str) -> Array:
-        """Processor seconds or evaluations at each mark."""
+        """Processor seconds or evaluations at each mark; ValueError by anything else."""
+        if by not in COSTS:
+            raise ValueError(f"by is {quoted(by)}; give {' or '.join(COSTS)}")
         return getattr(self, by)
 
     @property
@@ -114,7 +119,7 @@ def running_times(groups: Mapping[tuple[str, str], Sequence[History]]) -> pd.Dat
                 "reached": count,
                 "runs": len(histories),
             }
-            for by in ("seconds", "evaluations") if counts_candidates else ("seconds",):
+            for by in COSTS if counts_candidates else COSTS[:1]:
                 times = expected_running_time(histories, target, by)
                 row |= zip((by, f"{by}_low", f"{by}_high"), times)
             rows.append(row)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from quietarm.metaheuristics import NamedProblem
-from quietarm.studies.bench.results import Results, bench_label, quartiles, told_apart
+from quietarm.studies.bench.results import ENERGIES, Results, bench_label, quartiles, told_apart
 from quietarm.views.report.words import counted
 
 Array = NDArray[np.float64]
@@ -113,6 +113,11 @@ class Ranking:
     p_value: float
     critical: float
     left_out: tuple[str, ...]
+
+    @property
+    def has_power(self) -> bool:
+        """Return whether any two mean ranks could differ by the critical difference."""
+        return self.critical < len(self.methods) - 1
 
     @property
     def best(self) -> tuple[str, ...]:
@@ -226,23 +231,33 @@ def values_on(results: Results, problem: str, column: str) -> Mapping[str, Array
 
 
 def moves_of(problems: Sequence[NamedProblem]) -> list[list[NamedProblem]]:
-    """Problems by move: those of one plant, angle and duration are not independent."""
+    """Problems by move: those of one plant, angle and duration are not independent.
+
+    Each function counts as a move of its own.
+    """
     moves: dict[object, list[NamedProblem]] = {}
     for problem in problems:
-        task = problem.task
-        key = task.plant, round(task.start, 9), round(task.target, 9), round(task.duration, 9)
-        moves.setdefault(key, []).append(problem)
+        moves.setdefault(_move_of(problem), []).append(problem)
     return list(moves.values())
+
+
+def _move_of(problem: NamedProblem) -> object:
+    """Return what tells the move of a problem from others."""
+    if not problem.is_move:
+        return problem.name
+    task = problem.task
+    return task.plant, round(task.start, 9), round(task.target, 9), round(task.duration, 9)
 
 
 def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
     """Rank methods by their medians on each independent move; None with less than 3 of either.
 
-    Ranked are methods that have runs on every problem; problems of one move count once, with the
-    mean of their ranks. Of methods with the same values throughout, as a search and the same that
-    is yet to be polished, one is ranked.
+    By energies only moves are ranked, not functions. Ranked are methods that have runs on every
+    problem; problems of one move count once, with the mean of their ranks. Of methods with the same
+    values throughout, as a search and the same that is yet to be polished, one is ranked.
     """
-    names = [problem.name for problem in results.problems]
+    problems = results.moves if column in ENERGIES else results.problems
+    names = [problem.name for problem in problems]
     known = {name: values_on(results, name, column) for name in names}
     left_out = [
         f"{bench_label(method)} (not on all problems, or too few runs)"
@@ -257,7 +272,7 @@ def ranking_over(results: Results, column: str = "missing") -> Ranking | None:
             ranked.append(method)
         else:
             left_out.append(f"{bench_label(method)} (the same as {bench_label(twin)})")
-    moves = moves_of(results.problems)
+    moves = moves_of(problems)
     if len(ranked) < 3 or len(moves) < 3:
         return None
     rows = list[Array]()

@@ -319,7 +319,7 @@ METHOD_SETTING = option("--setting", "settings", type=SETTING, multiple=True, me
                         "nsga2.crossover=0.7; quietarm list METHOD has them all.")  # fmt: skip
 WORKERS = option("--workers", type=Parsed("number", parse_workers), default="1",
                  help="Processes of this machine that share the work.")  # fmt: skip
-YES = option("--yes", is_flag=True, help="Begin what takes a core more than ten hours.")
+YES = option("--yes", is_flag=True, help="Start even if the work takes more than ten core-hours.")
 SCHEDULER = option("--scheduler", metavar="ADDRESS",
                    type=Parsed("address", scheduler_address),
                    help="Let the workers of this dask scheduler share the work, as in "

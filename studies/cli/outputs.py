@@ -79,7 +79,7 @@ def _check_format(path: Path, kinds: Mapping[str, str], formats: Sequence[str]) 
             format_of(path)  # which says what it stands beside
     further = [form.endings[0] for form in formats_of(*formats) if form.endings[0] not in kinds]
     also = f"; or {', '.join(further)}" if further else ""
-    raise ValueError(f"{path} is none of the files that it writes; give {_listed(kinds, ())}{also}")
+    raise ValueError(f"cannot write {path}: give {_listed(kinds, ())}{also}")
 
 
 def _listed(kinds: Mapping[str, str], formats: Sequence[str]) -> str:
@@ -180,7 +180,7 @@ def check_page(output: Sequence[Path], objectives: Sequence[str]) -> None:
 def finish(
     files: Sequence[File],
     *shown: Report | Sequence[tuple[str, str]] | str,
-    trouble: Exception | None = None,
+    trouble: BaseException | None = None,
 ) -> None:
     """Save every file that was asked for, show what was found, and say what was written.
 
@@ -189,7 +189,7 @@ def finish(
     """
     written = list[str]()
     notes = list[str]()
-    failures = list[Exception]()
+    failures = list[BaseException]()
     with note_interrupts() as came, busy("writing"):
         for path, write in files:
             try:
@@ -214,7 +214,7 @@ def finish(
         raise error
 
 
-def _error_of_all(errors: Sequence[Exception]) -> Exception | None:
+def _error_of_all(errors: Sequence[BaseException]) -> BaseException | None:
     """The error that has no words for the user, or the only one, or one with the words of all."""
     for error in errors:
         if not isinstance(error, ValueError | QuietarmError) or len(errors) == 1:

@@ -38,7 +38,7 @@ def functions_report(
             "heading_of": heading_of,
         },
         {"methods": methods, "runs": _runs(comparison)},
-        {"fronts.png": partial(pictures.front_figure, list(fronts.values()))},
+        {"fronts.png": partial(pictures.function_comparison_figure, comparison)},
     )
 
 

@@ -9,6 +9,7 @@ from .front_figures import draw_hypervolume as draw_hypervolume
 from .front_figures import draw_seed_energies as draw_seed_energies
 from .front_figures import front_figure as front_figure
 from .front_figures import polish_figure as polish_figure
+from .function_figures import function_comparison_figure as function_comparison_figure
 from .grammar import BLUE as BLUE
 from .grammar import COLOURS as COLOURS
 from .grammar import GREEN as GREEN

@@ -129,21 +129,15 @@ def draw_comparison(
     scale = tip_scale(tip_unit)[1]
     if small:
         right = min(max(*comparison.levels, _END * float(comparison.best_front[0, 0])), right)
-    for group, look_of_group, wider in _drawn(comparison):
+    for group, look_of_group, wider in drawn_groups(comparison):
         line = group.by_gradient and len(group.runs) == 1 and comparison.fill
-        shown = _up_to(group.runs[0].between if line else group.median, right)
+        shown = up_to(group.runs[0].between if line else group.median, right)
         draw_front(
             ax, shown[:, 0], shown[:, 1], tip_unit, exact=line, width=1.2 + wider,
             color=look_of_group.colour, linestyle=look_of_group.dash,
             label=with_kind(group.label, group.by_gradient),
         )  # fmt: skip
-        if len(group.runs) > 1:
-            residuals, best, worst = group.band
-            shown = residuals <= right
-            ax.fill_between(
-                residuals[shown] * scale, best[shown], worst[shown], step="post",
-                color=look_of_group.colour, alpha=0.2, linewidth=0,
-            )  # fmt: skip
+        draw_band(ax, group, look_of_group, right, scale)
     for point, mark in zip(known, cycle("*Pv")):
         if point.residual is None:
             ax.axhline(point.energy, color=PAPER.colour, lw=PAPER.width, ls=PAPER.dash,
@@ -171,6 +165,20 @@ def draw_comparison(
     else:
         ax.set_xlim(0, right * scale)
     return ax
+
+
+def draw_band(ax: Axes, group: RunsOfMethod, look: Look, right: float, scale: float = 1.0) -> None:
+    """Draw from the best to the worst of several runs, up to a value of the first objective."""
+    if len(group.runs) < 2:
+        return
+    stairs, best, worst = group.band
+    shown = np.flatnonzero(stairs <= right)
+    shown = np.append(shown, shown[-1:])  # the last step goes on to the right end
+    places = np.append(stairs[shown[:-1]], [right] if len(shown) else [])
+    ax.fill_between(
+        places * scale, best[shown], worst[shown], step="post", color=look.colour,
+        alpha=0.2, linewidth=0,
+    )  # fmt: skip
 
 
 def _draw_floor(ax: Axes, comparison: Comparison, rest: float) -> None:
@@ -223,7 +231,7 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
     """
     ax = axes_or_new(ax)
     scale = tip_scale(comparison.task.plant.tip_unit)[1]
-    for group, look_of_group, wider in _drawn(comparison):
+    for group, look_of_group, wider in drawn_groups(comparison):
         ax.plot(
             np.maximum(group.median[:, 0], _left(comparison)) * scale,
             100 * comparison.above_best(group.median), look_of_group.mark,
@@ -240,7 +248,7 @@ def draw_gaps(comparison: Comparison, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _drawn(comparison: Comparison) -> Iterator[tuple[RunsOfMethod, Look, float]]:
+def drawn_groups(comparison: Comparison) -> Iterator[tuple[RunsOfMethod, Look, float]]:
     """Every group, its look, and how much wider it is drawn, to be seen below the next ones."""
     last = len(comparison.groups) - 1
     meanings = ["plan" if group.by_gradient else "search" for group in comparison.groups]
@@ -248,8 +256,8 @@ def _drawn(comparison: Comparison) -> Iterator[tuple[RunsOfMethod, Look, float]]
         yield group, look, 0.35 * (last - place)
 
 
-def _up_to(points: Array, right: float) -> Array:
-    """Points up to a residual, and the last one's energy there."""
+def up_to(points: Array, right: float) -> Array:
+    """Return points up to a residual, and the last one's energy there."""
     inside = points[points[:, 0] <= right]
     return inside if not len(inside) else np.vstack([inside, [right, inside[-1, 1]]])
 

@@ -59,10 +59,10 @@ def _chosen_points(front: Front) -> list[str]:
     if not isinstance(front, FunctionFront) or not front.points:
         return []
     table = front.objective_values
-    rows = {f"least {entry.label}": int(table[:, k].argmin())
+    rows = {f"least {entry.label}:": int(table[:, k].argmin())
             for k, entry in enumerate(front.outputs)}  # fmt: skip
     if front.has_knee:
-        rows["knee"] = front.points.index(front.knee())  # pyright: ignore[reportArgumentType]
+        rows["knee:"] = front.points.index(front.knee())  # pyright: ignore[reportArgumentType]
     width = max(15, *(len(name) + 1 for name in rows))
     return [
         f"  {name:{width}}{values_of_function(front, table[row].tolist())}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from quietarm.metaheuristics import PRESETS
 from quietarm.metaheuristics.named_method import NamedMethod
 
@@ -9,6 +11,7 @@ GRADIENT_LABELS = {
     "epsilon": "epsilon constraint", "weighted": "weighted sum", "multistart": "multistart",
 }  # fmt: skip
 """Methods by the gradient, by their names."""
+_IN_BRACKETS = re.compile(r" \(([^()]*)\)")
 _SOLVERS = {"sqp": "SQP", "ipopt": "IPOPT"}
 
 
@@ -37,5 +40,5 @@ def described(method: str) -> str:
 def with_kind(label: str, by_gradient: bool) -> str:
     """A method's label with what the method is: gradient (epsilon constraint)."""
     kind = "gradient" if by_gradient else "search"
-    name = label.replace(" (", "; ").replace(")", "")
+    name = _IN_BRACKETS.sub(r"; \1", label)  # settings; the brackets of (1+1)-ES are its name's
     return f"{kind} ({name})"

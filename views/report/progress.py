@@ -130,17 +130,21 @@ class Lines:
 
 
 @contextmanager
-def search_display(console: Console) -> Iterator[SearchDisplay]:
-    """Show a search's generation, best residual, least energy, hypervolume, speed and time left."""
+def search_display(console: Console, *, of_function: bool = False) -> Iterator[SearchDisplay]:
+    """Show a search's generation, best residual, least energy, hypervolume, speed and time left.
+
+    Of a function the values stand in its own units, as in its answer.
+    """
     columns = BarColumn(bar_width=12), TimeRemainingColumn(), WORDS
     with bars(console, *columns) as shown:
-        yield SearchDisplay(shown, Lines(console))
+        yield SearchDisplay(shown, Lines(console), of_function=of_function)
 
 
 class SearchDisplay:
     """Called with every generation of one search, and with every search that ends."""
 
-    def __init__(self, shown: Progress, lines: Lines) -> None:
+    def __init__(self, shown: Progress, lines: Lines, *, of_function: bool = False) -> None:
+        self._of_function = of_function
         self._bars = shown
         self._lines = lines
         self._task = shown.add_task("", visible=False)
@@ -150,9 +154,21 @@ class SearchDisplay:
         done = progress.generation
         total = progress.generations
         self._bars.update(
-            self._task, completed=done, total=total, description=_brief(progress), visible=True
-        )
-        self._lines.say(_figures(progress), last=done == total)
+            self._task, completed=done, total=total, visible=True,
+            description=_brief(progress, self._first(progress, ".2g")),
+        )  # fmt: skip
+        self._lines.say(_figures(progress, self._first(progress)), last=done == total)
+
+    def _first(self, progress: SearchProgress, form: str = "") -> str:
+        """The least of the first objective: a residual in millimetres, or what a function gave."""
+        if self._of_function:
+            return f"{progress.residual:{form or '.4g'}} {progress.tip_unit}".rstrip()
+        if form:
+            shown, scale = tip_scale(progress.tip_unit)
+            return f"{scale * progress.residual:{form}} {shown}"
+        if 0 <= progress.residual < STILL:
+            return f"below {tip_words(STILL, progress.tip_unit)}"
+        return tip_words(progress.residual, progress.tip_unit)
 
     def finish(self, front: Front) -> None:
         """Show what a search found."""
@@ -160,6 +176,8 @@ class SearchDisplay:
 
 
 def _found(front: Front) -> str:
+    if not front.points:
+        return f"seed {front.record.seed} is done in {front.record.seconds:.1f} s: no point"
     from quietarm.metaheuristics.score import final_share_of_box  # loads moocore
 
     share = final_share_of_box(front)
@@ -169,16 +187,13 @@ def _found(front: Front) -> str:
     )
 
 
-def _figures(progress: SearchProgress) -> str:
+def _figures(progress: SearchProgress, least: str) -> str:
     done = progress.generation
     total = progress.generations
     seconds_left = progress.seconds * (total - done) / max(done, 1)
     share = progress.infeasible / max(progress.evaluations, 1)
-    residual = tip_words(progress.residual, progress.tip_unit)
     first, second = progress.names
-    if 0 <= progress.residual < STILL:
-        residual = f"below {tip_words(STILL, progress.tip_unit)}"
-    best = f"{first} {residual}, {second} {progress.energy:.4g} {progress.energy_unit}"
+    best = f"{first} {least}, {second} {progress.energy:.4g} {progress.energy_unit}".rstrip()
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
@@ -187,11 +202,10 @@ def _figures(progress: SearchProgress) -> str:
     )
 
 
-def _brief(progress: SearchProgress) -> str:
+def _brief(progress: SearchProgress, least: str) -> str:
     """Return the progress in a few words, for a bar, which has little room."""
-    shown, scale = tip_scale(progress.tip_unit)
     return (
-        f"{progress.generation}/{progress.generations} {scale * progress.residual:.2g} {shown} "
+        f"{progress.generation}/{progress.generations} {least} "
         f"{progress.energy:.3g} {progress.energy_unit} hv {progress.hypervolume:.3f} "
         f"{_speed(progress):.0f}/s"
     )

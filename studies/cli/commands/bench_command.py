@@ -65,14 +65,15 @@ def read_evaluations(text: str | int) -> int | None:
     PART, WORKERS, SCHEDULER, YES,
 )  # fmt: skip
 def bench(given: Given) -> None:
-    """Hold methods against the reference front of each PROBLEM, from several seeds.
+    """Compare methods with the reference front of each PROBLEM, with several seeds.
 
     PROBLEM is a name of `quietarm list`, or a front's file, whose move, profile, bound and
     objectives are the problem and which is its reference front; `all` are the named problems with
     two objectives. With --objectives the gradient finds the reference fronts first. --noise is of
     the searches: the gradient is that of the model, which has none.
     Every run is a file in the folder as soon as it is done; the same line again goes on after any
-    stop. When a search is worth its candidates at all: docs/results/report.md.
+    stop. A bench of your own function is made in Python: docs/problems.md. When a search is worth
+    its candidates at all: docs/results/report.md.
 
     \b
     Examples:

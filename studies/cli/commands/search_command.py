@@ -20,6 +20,7 @@ from quietarm.metaheuristics.run_search import (
 )
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
+from quietarm.ocp.objectives import checked_objectives
 from quietarm.studies.answers.read_answers import load_front
 from quietarm.studies.cli.effort import refuse_endless
 from quietarm.studies.cli.function_file import FunctionOfFile
@@ -29,7 +30,6 @@ from quietarm.studies.cli.options import (
     BOUND,
     METHOD_SETTING,
     NOISE,
-    OBJECTIVES,
     ROBOT_PATH,
     SEED,
     TASK,
@@ -37,6 +37,7 @@ from quietarm.studies.cli.options import (
     YES,
     command,
     method_option,
+    objectives_option,
     option,
     profile_options,
     progress_console,
@@ -50,7 +51,7 @@ from quietarm.studies.cli.outputs import (
     output_option,
 )
 from quietarm.studies.cli.quantities import parse_sides, read_settings
-from quietarm.studies.cli.types import INPUT, Parsed
+from quietarm.studies.cli.types import INPUT, NAMES, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.front_rows import search_lines
 from quietarm.views.report.function_rows import function_lines
@@ -81,7 +82,8 @@ _BY_GRADIENT = {
                   "The metaheuristic; quietarm list methods has them."),
     option("--function", type=Parsed("FILE.py:NAME", FunctionOfFile.read), metavar="FILE.py:NAME",
            help="In place of PLANT: your own function of candidates, such as a simulator. The "
-           "file is run: give one that you trust."),
+           "file is run: give one that you trust. Its attributes `units`, `reference` and "
+           "`vectorized` count as well."),
     *profile_options(), BOUND,
     option("--lower", type=Parsed("numbers", parse_sides), metavar="A,B,...",
            help="Of --function: the least of each coefficient, such as --lower=-1,-1,0. [default: "
@@ -91,13 +93,21 @@ _BY_GRADIENT = {
     option("--population", type=int, help="Individuals, or particles in a swarm."),
     option("--generations", type=int, help="Generations."),
     option("--evaluations", type=int, help="Candidates in all, in place of generations."),
-    OBJECTIVES, *NOISE, METHOD_SETTING, SEED,
+    objectives_option(NAMES.parse, " Of --function: the names of what it returns, such as "
+                      "sway,cost; else its attribute `objectives` counts."),
+    option("--constraints", type=NAMES, metavar="NAME,NAME,...",
+           help="Of --function: names of the violations that it returns beside the objectives, "
+           "such as touch. [default: its attribute `constraints`]"),
+    *NOISE, METHOD_SETTING, SEED,
     option("--runs", default=1,
            help="Seeds, from --seed on; each has a file, such as front-seed0.json, once it is "
                 "done."),
     option("--from", "start_front", type=INPUT,
            help="A front to begin with, in the first population."),
-    WORKERS, YES,
+    WORKERS,
+    option("--threads", default=1, help="Candidates that are evaluated at the same time in a "
+           "process, such as calls of --function that wait; of a move, blocks of them."),
+    YES,
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture of all fronts"},
                   formats=["front"]),
 )  # fmt: skip
@@ -121,12 +131,13 @@ def search(given: Given) -> None:
     several = given.runs > 1
     if several and STDOUT in given.output:
         raise ValueError("--output - is for one run; with --runs give the name of a file")
-    check_page(given.output, given.objectives)
     # not at the top: --help needs it not
-    from quietarm.metaheuristics.parallel import LostWorkersError, side_by_side
+    from quietarm.metaheuristics.parallel import side_by_side
 
     asked = _function(given) if given.function else _move(given)
-    options = given.pick("population", "generations", "evaluations", "noise", "reevaluate") | {
+    options = given.pick(
+        "population", "generations", "evaluations", "noise", "reevaluate", "threads"
+    ) | {
         "settings": read_settings(given.settings),
         "start": None if given.start_front is None else load_front(given.start_front),
     }
@@ -138,15 +149,15 @@ def search(given: Given) -> None:
     preset = PRESETS[method]
     population = given.population or preset.population
     generations = given.generations or preset.generations
-    objectives = len(given.objectives)
-    of_run = given.evaluations or preset.evaluations(population, generations, objectives)
+    count = len(given.objectives)
+    of_run = given.evaluations or preset.evaluations(population, generations, count)
     candidates = len(seeds) * of_run * given.reevaluate
     if not given.function:  # how long a user's own takes nobody knows
         refuse_endless(candidates, "candidates", SECONDS_OF_CANDIDATE, yes=given.yes)
     fronts = list[Front]()
     stopped = list[Front]()
-    trouble: QuietarmError | None = None
-    with search_display(progress_console()) as display:
+    trouble: BaseException | None = None
+    with search_display(progress_console(), of_function=bool(given.function)) as display:
         if not several and workers == 1:
             asked.options["report"] = display
         try:
@@ -157,15 +168,12 @@ def search(given: Given) -> None:
                 if several:
                     _save_at_once(given.output, front)
                 display.finish(front)
-        except (KeyboardInterrupt, LostWorkersError) as error:
+        except (Exception, SystemExit, KeyboardInterrupt) as error:
             stopped = asked.until_the_stop()
             if not (fronts or stopped):
                 raise
             words = _kept_words(fronts, stopped, given.runs, is_written=bool(given.output))
-            if isinstance(error, KeyboardInterrupt):
-                trouble = InterruptedCommandError(f"interrupted: {words}", error)
-            else:
-                trouble = QuietarmError(f"{error}: {words}")
+            trouble = _trouble(error, words)
     fronts.sort(key=lambda front: front.record.seed or 0)
     shown = fronts or stopped  # no statistics of seeds with one that was cut short
     if not any(front.points for front in shown):
@@ -202,6 +210,17 @@ class _Asked:
         return [front] if front.points else []
 
 
+def _trouble(error: BaseException, words: str) -> BaseException:
+    """Return what stopped a search, with words on what is kept; its exit status stays."""
+    if isinstance(error, KeyboardInterrupt):
+        return InterruptedCommandError(f"interrupted: {words}", error)
+    if isinstance(error, ValueError):  # of the user's function, as a rule
+        return ValueError(f"{error}; {words}")
+    if isinstance(error, QuietarmError):
+        return QuietarmError(f"{error}: {words}")
+    return error
+
+
 def _kept_words(
     fronts: Sequence[Front], stopped: Sequence[Front], runs: int, *, is_written: bool
 ) -> str:
@@ -222,6 +241,12 @@ def _kept_words(
 def _move(given: Given) -> _Asked:
     """The move that was typed, with its profile and its bounds."""
     given.refuse(["lower", "upper"], "is for --function, and this is a move with a --bound")
+    given.refuse(["constraints"], "is for --function, and a move has limits")
+    try:
+        objectives = checked_objectives(given.objectives)
+    except ValueError as error:
+        raise click.BadParameter(str(error), param_hint="'--objectives'") from None
+    check_page(given.output, objectives)
     task = given.read_task()
     profile = given.read_profile(task)
     if given.bound is None and profile.default_bound is None:
@@ -229,13 +254,14 @@ def _move(given: Given) -> _Asked:
         raise click.UsageError(
             f"Missing option '--bound', the largest size of a coefficient (the paper's: {papers})"
         )
-    return _Asked(task, given.method, {"profile": profile, **given.pick("bound", "objectives")})
+    options = {"profile": profile, "objectives": objectives, **given.pick("bound")}
+    return _Asked(task, given.method, options)
 
 
 _OF_FUNCTIONS = (
-    "function", "lower", "upper", "method", "population", "generations", "evaluations", "noise",
-    "reevaluate", "settings", "seed", "runs", "start_front", "workers", "yes", "output", "quiet",
-    "plant_file",
+    "function", "lower", "upper", "objectives", "constraints", "method", "population",
+    "generations", "evaluations", "noise", "reevaluate", "settings", "seed", "runs", "start_front",
+    "workers", "threads", "yes", "output", "quiet", "plant_file",
 )  # fmt: skip
 """Options that a function has."""
 
@@ -270,7 +296,10 @@ def _function(given: Given) -> _Asked:
             given.evaluations, given.population or given.generations or given.start_front
         )
     )
-    return _Asked(given.function, method, given.pick("lower", "upper"))
+    options = given.pick("lower", "upper", "constraints")
+    if given.typed("objectives"):  # else the function's own
+        options |= given.pick("objectives")
+    return _Asked(given.function, method, options)
 
 
 def _search(asked: _Asked, seed: int) -> Front:

@@ -147,12 +147,21 @@ def test_a_front_of_a_function_is_saved_loaded_compared_and_written_as_a_table(t
     loaded = qa.Front.load(tmp_path / "front.json")
     assert loaded == fronts[0]
     assert isinstance(loaded, FunctionFront)
+    count = len(loaded.points)
+    assert repr(loaded) == f"<FunctionFront by moead-de: {count} points of 100 candidates>"
     loaded.save_csv(tmp_path / "front.csv")
     assert (tmp_path / "front.csv").read_text().startswith("residual_m,energy_J,a_1,a_2\n")
     comparison = compare_fronts([loaded, fronts[1]])
     assert [len(group.runs) for group in comparison.groups] == [2]
     drawn = qa.pictures.front_figure(fronts)
     assert drawn.axes[0].get_xlabel() == "residual [m]"
+    es = qa.search(parabolas, **BOX, evaluations=50, algorithm="es")
+    drawn = qa.pictures.function_comparison_figure(compare_fronts([*fronts, es], fill=False))
+    (axes,) = drawn.axes  # a line a method, with a band where it has seeds
+    labels = [line.get_label() for line in axes.lines]
+    assert labels == ["MOEA/D-DE", "(1+1)-ES with an archive"]
+    assert len(axes.collections) == 1
+    assert drawn.get_suptitle().startswith("Hypervolume gap: ")
     again = qa.search(parabolas, **BOX, evaluations=50, population=10, start=loaded)
     assert again.residuals.min() <= loaded.residuals.min()
     assert again.reference == loaded.reference  # so that their hypervolumes are of one area

@@ -189,6 +189,7 @@ def test_methods_are_named_by_what_they_are(front, poor, task):
     assert move["method"] == "gradient (epsilon constraint)"
     assert described("epsilon:ipopt") == "gradient (epsilon constraint, IPOPT)"
     assert described("nsga2(crossover=0.7)") == "search (NSGA-II; crossover=0.7)"
+    assert described("es") == "search ((1+1)-ES with an archive)"
     assert described("vepso, polished") == "search (VEPSO, polished)"
     assert [beside["label"] for beside in move["beside"]] == [
         "search (NSGA-II)", "the paper's best (6 terms)",

@@ -88,6 +88,10 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
     limits = {"speed_limit": 1.5, "acceleration_limit": 7.0, "jerk_limit": 150.0}
     by_time = time_front(axis.task(0.4, 1.0, band=1e-3, **limits), points=2)
     comparison = replace(compare_fronts([gradient, *seeds], fill=False), floor=0.1)
+    square = {"lower": [-1.0, -1.0], "upper": 1.0, "evaluations": 30, "algorithm": "es"}
+    of_function = compare_fronts(
+        [qa.search(lambda x: x**2, **square, seed=seed) for seed in (0, 1)], fill=False
+    )
     errors = evaluate_robustness(plan.candidate, {"frequency": 0.1}, samples=1)
     floor = energy_floor(task, starts=1, energy_tolerance=0.5)
     polish = Polish(gradient, (Gain(1e-3, 0.5, 0.4), Gain(9e-3, 0.3, 0.2)))
@@ -103,6 +107,7 @@ def figures(task, plan, robust, seeds, gradient, surface, machine):
         "draw_peak": of.draw_peak([surface]).figure,
         "draw_parallel": of.draw_parallel([surface, surface]).figure,
         "draw_seed_energies": of.draw_seed_energies(seeds).figure,
+        "function_comparison_figure": of.function_comparison_figure(of_function),
         "comparison_figure": of.comparison_figure(comparison),
         "draw_comparison": of.draw_comparison(comparison, small=True).figure,
         "draw_gaps": of.draw_gaps(comparison).figure,

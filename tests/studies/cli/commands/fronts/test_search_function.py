@@ -30,6 +30,19 @@ def stopped(x):
     return parabolas(x)
 stopped.lower, stopped.upper = [-5, -5], 5
 
+calls = 0
+def crash(x):
+    global calls
+    calls += 1
+    if calls > 20:
+        raise RuntimeError("simulator crashed")
+    return parabolas(x), [x[0] - 9]
+crash.lower, crash.upper = [-5, -5], 5
+
+def never(x):
+    return parabolas(x), [1.0]
+never.lower, never.upper, never.constraints = [-5, -5], 5, ["wall"]
+
 number = 3
 """
 
@@ -49,11 +62,13 @@ def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder)
     front = qa.Front.load(folder / "a.json")
     assert front.record.evaluations == 60
     assert (folder / "a.csv").read_text().startswith("way_mm,work_J,a_1,a_2\n")
-    assert call(f"{line} --seed 1 --from a.json")[0] == 2  # it begins where its seed says
+    assert call(f"{line} --seed 1 --from a.json")[0] == 2  # es has no population to put it into
     bounds = "--lower=-5,-5 --upper 5"
     asked = "search --function simulator.py:parabolas --method nsga2 --evaluations 60"
     code, _, err = call(f"{asked} {bounds} --from a.json --output b.json")
     assert code == 0, err
+    assert "residual" in err
+    assert " mm" not in err  # the function's own unit, as in the answer
     code, out, err = call(f"{line} --seed 1 --output c.json")
     assert code == 0, err
     code, out, err = call("compare a.json c.json")
@@ -77,6 +92,7 @@ def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder)
         ("--function simulator.py:boxed --bound 1", "--bound is for a move"),
         ("--function simulator.py:boxed --evaluations 9 -o a.html", "a.html is for a front"),
         ("single-link --target 1 --duration 1 --bound 1 --lower 1", "--lower is for --function"),
+        ("single-link --target 1 --duration 1 --bound 1 --constraints a", "a move has limits"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(refused, line, words):
@@ -97,6 +113,29 @@ def test_what_is_stopped_keeps_the_candidates_until_then(call, folder, method):
     _, out, err = call(line)
     assert f"the first {count} candidates is shown and not written" in err
     assert f"{count} candidates in" in out
+
+
+@pytest.mark.usefixtures("simulator")
+def test_a_function_that_fails_keeps_the_candidates_until_then(call, folder):
+    line = "search --function simulator.py:crash --evaluations 60 --method es --quiet --output"
+    code, out, err = call(f"{line} kept.json --constraints wall --objectives way,work")
+    assert code == 2
+    assert "wrote kept.json" in out
+    assert "RuntimeError: simulator crashed; mend it" in err
+    assert err.endswith("; the front of the first 20 candidates is written\n")
+    front = qa.Front.load(folder / "kept.json")
+    assert front.record.evaluations == 20
+    assert front.objectives == ("way", "work")
+    assert front.task.constraints == ("wall",)
+
+
+@pytest.mark.usefixtures("simulator")
+def test_where_nothing_is_feasible_no_hypervolume_is_said(call):
+    code, out, err = call("search --function simulator.py:never --evaluations 20 --method es")
+    assert (code, out) == (1, "")
+    assert "no point" in err
+    assert "20 of 20 candidates violate the constraints (wall)" in err
+    assert "area up to" not in err
 
 
 @pytest.mark.usefixtures("simulator")
@@ -121,9 +160,9 @@ def test_commands_that_need_a_move_say_so(refused, call):
     for command in (
         "front --polish a.json",
         "explore a.json --no-browser",
-        "bench a.json --output b",
     ):
         assert "has no plant and no task" in refused(command)
+    assert "make NamedProblem.of_function('mine'" in refused("bench a.json --output b")
 
 
 def test_a_file_that_fails_is_named_with_its_line(refused, folder):
