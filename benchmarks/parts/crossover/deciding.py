@@ -48,7 +48,7 @@ class Deciding:
 DECIDING = {
     "centre": Deciding(("centre",), 10_000, ("moead-de", "slsqp")),
     "limits": Deciding(("limits",), 10_000, ("moead-de", "slsqp")),
-    "limits-1000": Deciding(("limits",), 1_000, ("es", "slsqp")),
+    "limits-1000": Deciding(("limits",), 1_000, ("es", "gp", "slsqp")),
     "limits-200": Deciding(("limits",), 200, ("gp", "slsqp")),
     "jumps": Deciding(("energy",), 10_000, ("moead-de", "slsqp"), "motor-map"),
     "noise": Deciding(
@@ -61,12 +61,12 @@ DECIDING = {
     "few-1000": Deciding(
         ("crossing", "few"),
         1_000,
-        ("es", "gde3 population=20", "moead-de population=20", "slsqp"),
+        ("es", "gde3 population=20", "gp", "moead-de population=20", "slsqp"),
     ),
     "few-1000-noise": Deciding(
         ("few",),
         1_000,
-        ("gde3 population=20 noise=0.01", "moead-de population=20 noise=0.01",
+        ("gde3 population=20 noise=0.01", "gp noise=0.01", "moead-de population=20 noise=0.01",
          "slsqp step=0.01 noise=0.01"),
     ),
     "objectives": Deciding(("objectives",), 10_000, ("moead-de",)),
