@@ -229,7 +229,7 @@ def draw_cell(
     text = f"{name}\n{two_digits(row['missing'])} %\n{rival}\n"
     if row["no_front"]:
         ax.add_patch(Rectangle(corner, 1, 1, facecolor=NO_FRONT, edgecolor="white"))
-        middle(ax, corner, f"{text}nothing yet", "black")
+        middle(ax, corner, f"{text}no front yet", "black")
         return
     colour = DIVERGING(NORM(np.clip(row["log_ratio"], -MOST_DECADES, MOST_DECADES)))
     ax.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white"))
