@@ -140,8 +140,8 @@ def search(
     report : callable, optional
         Called with a `SearchProgress` after every generation.
     begun : callable, optional
-        Called with the run before its first candidate: after Ctrl-C the `front` of that run has
-        what was found until then.
+        Called with the run before its first candidate: after Ctrl-C, or an error of a function, the
+        `front` of that run has what was found until then.
     objectives : sequence of str
         Residual and energy, and peaks beside them, as ``"peak_torque"``; of a function any names.
     energy : callable, optional

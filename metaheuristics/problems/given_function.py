@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.evaluation.population import replace_failures
+from quietarm.metaheuristics.evaluation.population import UNUSABLE, replace_failures
 from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
 from quietarm.ocp import Front
 from quietarm.ocp.checks import clipped, numbers, quoted, table_of, whole, words_of_error
@@ -135,13 +135,16 @@ class GivenFunction(ProblemFunction):
         A candidate whose values are not finite has 1e30 everywhere, so that it comes last.
         """
         table = table_of(candidates, len(self.variables))
-        values = np.empty((0, len(self.objectives) + len(self.constraints)))
-        if len(table):
-            values = self._values(table)
-        failed = replace_failures(values)
-        self._first_failures.note(self._name, failed)
+        values = np.empty((len(table), len(self.objectives) + len(self.constraints)))
+        self.fill(table, values)
         count = len(self.objectives)
         return values[:, :count].copy(), values[:, count:].copy()
+
+    def fill(self, candidates: Array, values: Array) -> None:
+        """Write the values of candidates into a table, each row or block as it is evaluated."""
+        if len(candidates):
+            self._fill(candidates, values)
+        self._first_failures.note(self._name, values[:, 0] >= UNUSABLE)
 
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
@@ -168,21 +171,25 @@ class GivenFunction(ProblemFunction):
         of_function: Any = points
         return FunctionFront(points=of_function, record=record, function=self.searched, **entries)
 
-    def _values(self, table: Array) -> Array:
-        """Objectives and violations of some candidates, as rows."""
+    def _fill(self, table: Array, values: Array) -> None:
         if self._vectorized is None:
-            first = self._first(table[:1])
-            return np.vstack([first, self._values(table[1:])]) if len(table) > 1 else first
-        if not self._vectorized:
-            return np.vstack(self._side_by_side(self._one, list(table)))
-        blocks = np.array_split(table, min(self.threads, len(table)))
-        return np.vstack(self._side_by_side(self._many, blocks))
+            _write(self._first(table[:1]), values[:1])
+            table, values = table[1:], values[1:]
+        count = len(table) if not self._vectorized else min(self.threads, len(table))
+        if not count:
+            return
 
-    def _side_by_side(self, call: Callable[[Array], Array], parts: Sequence[Array]) -> list[Array]:
-        if self.threads == 1 or len(parts) == 1:
-            return [call(part) for part in parts]
+        def evaluate(part: Array, rows: Array) -> None:
+            _write(self._many(part) if self._vectorized else self._one(part[0]), rows)
+
+        parts = np.array_split(table, count), np.array_split(values, count)
+        if self.threads == 1 or count == 1:
+            for part, rows in zip(*parts):
+                evaluate(part, rows)
+            return
         with ThreadPoolExecutor(self.threads) as pool:
-            return list(pool.map(call, parts))
+            for _ in pool.map(evaluate, *parts):
+                pass
 
     def _first(self, row: Array) -> Array:
         """Values of the first candidate; from now on it is known how the function is called."""
@@ -327,6 +334,12 @@ def failure_of(name: str, function: Function, error: Exception) -> FunctionFaile
         f"{name}{place} fails: {words_of_error(error)}; mend it, or return nan for a candidate "
         "that cannot be evaluated"
     )
+
+
+def _write(evaluated: Array, rows: Array) -> None:
+    """Write what was evaluated into its rows of a table; what failed is unusable there."""
+    replace_failures(evaluated)
+    rows[:] = evaluated
 
 
 def _dimensions(value: Any) -> int:

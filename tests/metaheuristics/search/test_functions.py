@@ -192,6 +192,31 @@ def test_threads_call_a_function_of_one_candidate_at_the_same_time():
     assert front.coefficients.tolist() == alone.coefficients.tolist()
 
 
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("method", ["gp", "es", "nsga2"])
+@pytest.mark.parametrize("stop", [KeyboardInterrupt, RuntimeError])
+def test_what_was_evaluated_before_a_stop_is_in_the_front_of_the_run(method, threads, stop):
+    calls = []
+
+    def stops(x):
+        calls.append(x.tolist())
+        if len(calls) == 8:
+            raise stop
+        return parabolas(x)
+
+    begun = []
+    with pytest.raises((KeyboardInterrupt, ValueError)):
+        qa.search(
+            stops, **BOX, evaluations=240, algorithm=method, threads=threads, vectorized=False,
+            reevaluate=3, begun=begun.append,
+        )  # fmt: skip
+    front = begun[0].front()
+    assert front.record.evaluations == len(calls) - 1
+    evaluated = calls[:7] + calls[8:]  # others may have gone on beside the one that stopped
+    assert front.points
+    assert all(list(point.coefficients) in evaluated for point in front.points)
+
+
 @pytest.mark.slow
 def test_jobs_of_a_function_are_files_that_a_second_run_finds(tmp_path):
     reference = qa.search(parabolas, **BOX, evaluations=600, algorithm="es")
