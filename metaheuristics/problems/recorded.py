@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -68,6 +68,8 @@ class RecordedFunction(ProblemFunction):
     ----------
     failed, infeasible : int
         Candidates so far whose values were not finite, and that violated a limit.
+    after_call : callable, optional
+        Called each time that candidates were evaluated and kept.
     """
 
     @takes(profile=JointProfile)
@@ -107,6 +109,7 @@ class RecordedFunction(ProblemFunction):
         self.archive = Archive(problem_function, self.noise > 0)
         self.failed = 0
         self.infeasible = 0
+        self.after_call: Callable[[], None] | None = None
         self._idle = 0
         # the box that is searched is not a method's to change
         self.lower.flags.writeable = False
@@ -168,6 +171,8 @@ class RecordedFunction(ProblemFunction):
             self.archive.add(candidates, objectives, usable, without_noise, repeated)
         if stopped is not None:
             raise stopped
+        if self.after_call is not None:
+            self.after_call()
         if len(afforded) < len(table):
             raise BudgetSpentError
         return objectives, violations

@@ -217,6 +217,42 @@ def test_what_was_evaluated_before_a_stop_is_in_the_front_of_the_run(method, thr
     assert all(list(point.coefficients) in evaluated for point in front.points)
 
 
+@pytest.mark.parametrize(
+    ("method", "budget", "steps"),
+    [
+        # the first 2 n + 4 of gp, and the first five of es, are one call
+        ("gp", 12, [8, 9, 10, 11, 12]),
+        ("es", 8, [5, 6, 7, 8]),
+        ("slsqp", 2, [1, 2]),
+        ("own", 3, [1, 2, 3]),
+        ("nsga2", 25, [1, 2, 3]),  # the last generation is cut short
+    ],
+)
+def test_progress_is_reported_by_methods_with_generations_and_without(method, budget, steps):
+    class Own(qa.SearchMethod):
+        name = "own"
+
+        def run(self, function, seed, budget):
+            while True:
+                function([[0.5, 0.5]])
+
+    seen = []
+    qa.search(parabolas, **BOX, evaluations=budget, algorithm=method, report=seen.append)
+    assert [progress.generation for progress in seen] == steps
+    assert seen[-1].generation == seen[-1].generations
+    assert seen[-1].evaluations == budget
+    assert {progress.step for progress in seen} == {
+        "generation" if method == "nsga2" else "candidate"
+    }
+
+
+def test_progress_is_not_reported_more_often_than_is_read():
+    seen = []
+    qa.search(parabolas, **BOX, evaluations=400, algorithm="es", report=seen.append)
+    assert 190 < len(seen) < 300
+    assert seen[-1].evaluations == 400
+
+
 @pytest.mark.slow
 def test_jobs_of_a_function_are_files_that_a_second_run_finds(tmp_path):
     reference = qa.search(parabolas, **BOX, evaluations=600, algorithm="es")
