@@ -12,6 +12,7 @@ import threading
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -25,9 +26,10 @@ from quietarm.ocp import Front
 from quietarm.ocp.checks import Count, CountFromOne, numbers, quoted, table_of, whole
 from quietarm.ocp.files import check_writable
 from quietarm.ocp.front.searched_function import SearchedFunction
+from quietarm.ocp.json_text import Texts, texts_of
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Setting, versions
-from quietarm.ocp.saved import Answer, as_loaded
+from quietarm.ocp.saved import Answer, as_loaded, plain
 
 Array = NDArray[np.float64]
 Numbers = tuple[float | None, ...]
@@ -49,6 +51,11 @@ class Told:
     coefficients: tuple[float, ...]
     objectives: Numbers
     violations: Numbers = ()
+
+    @cached_property
+    def texts(self) -> Texts:
+        """Its texts in the file of a state, made once, however often that is written."""
+        return texts_of(plain(self), margin="\n    ")
 
 
 @dataclass(frozen=True)
@@ -88,6 +95,10 @@ class SearchState(Answer):
     reference: tuple[float, ...] = ()
     told: tuple[Told, ...] = ()
     versions: Mapping[str, str] = field(default_factory=versions, hash=False)
+
+    def _content(self) -> dict[str, Any]:
+        entries = plain(replace(self, told=()))
+        return {**entries, "told": [told.texts for told in self.told]}
 
     def differences(self, other: SearchState) -> list[str]:
         """Names of what another search would be asked for in another way."""

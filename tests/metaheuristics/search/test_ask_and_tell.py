@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import quietarm as qa
+from quietarm.metaheuristics import told_search
+from quietarm.ocp.json_text import texts_of
 
 SCRIPT = """
 import os, signal, sys
@@ -85,6 +87,22 @@ def test_it_goes_on_in_the_middle_of_a_generation_and_asks_what_a_search_asks(me
         constraints=["wall"], seed=3,
     )  # fmt: skip
     assert dataclasses.replace(direct, function=whole.function) == whole
+
+
+def test_a_told_candidate_is_encoded_once_however_often_the_state_is_written(tmp_path, monkeypatch):
+    encoded = []
+
+    def counted(document, **more):
+        encoded.append(document["number"])
+        return texts_of(document, **more)
+
+    monkeypatch.setattr(told_search, "texts_of", counted)
+    state = tmp_path / "run.json"
+    run(search_of(state=state))
+    assert encoded == list(range(1, 46))
+    loaded = told_search.SearchState.load(state)  # which checks the checksum
+    loaded.save(tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_text() == state.read_text()
 
 
 def test_several_candidates_may_be_measured_side_by_side_in_any_order():
