@@ -52,6 +52,11 @@ class Told:
     objectives: Numbers
     violations: Numbers = ()
 
+    @property
+    def failed(self) -> bool:
+        """Return whether one of its values was not finite."""
+        return None in self.objectives or None in self.violations
+
     @cached_property
     def texts(self) -> Texts:
         """Its texts in the file of a state, made once, however often that is written."""
@@ -166,8 +171,9 @@ class Search:
         self._path = None if state is None else check_writable(state)
         self._exchange = _Exchange()
         # not at the top: it loads pymoo, which takes longer than all of quietarm
-        from quietarm.metaheuristics.problems.given_function import GivenFunction
+        from quietarm.metaheuristics.problems.given_function import ALL_FAILED, GivenFunction
 
+        self._most_failures = ALL_FAILED
         problem = GivenFunction(
             self._exchange,
             lower=lower,
@@ -178,6 +184,7 @@ class Search:
             reference=reference,
             vectorized=True,
             name=name,
+            may_fail=True,  # whoever tells failures knows of them, and may mend the machine
         )
         self._run = SearchRun.begin(
             problem,
@@ -248,6 +255,8 @@ class Search:
     ) -> None:
         """Tell what a candidate, or several, came to; what is not finite counts as failed.
 
+        Where the first 20 have failed, a warning says so; the search goes on.
+
         Parameters
         ----------
         candidates : array_like, shape (coefficients,) or (candidates, coefficients)
@@ -279,10 +288,12 @@ class Search:
                 _or_none(of_candidate),
                 _or_none(passed),
             )
+        before = self.evaluations - count
         self._save()
         if all(told is not None for told in self._values):
             self._hand_over()
             self._go_on()
+        self._warn_of_failures(before)
 
     def front(self) -> Front:
         """The front of what was told until now, a `FunctionFront`; ValueError before that.
@@ -321,6 +332,19 @@ class Search:
                 "or another file"
             )
         return before.told
+
+    def _warn_of_failures(self, before: int) -> None:
+        """Say once that nothing but failures was told, after so many as a function may have."""
+        if not before < self._most_failures <= self.evaluations:
+            return
+        known = [*self._told, *(told for told in self._values if told is not None)]
+        if all(told.failed for told in known):
+            kept = "" if self._path is None else f"; {self._path} keeps them"
+            warnings.warn(
+                f"all {len(known)} candidates that were told have failed{kept}; mend what measures "
+                "and go on, failures count as candidates, or begin again with other bounds",
+                stacklevel=7,  # tell() is an operation, which has four frames of its own
+            )
 
     def _place_of(self, row: Array, taken: Sequence[int]) -> int:
         """Return which of the candidates that wait is meant."""

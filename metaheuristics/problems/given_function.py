@@ -29,7 +29,7 @@ from quietarm.ocp.record import Record
 
 Array = NDArray[np.float64]
 Function = Callable[..., Any]
-_ALL_FAILED = 20
+ALL_FAILED = 20
 """A function that gives no finite number for so many first candidates is refused."""
 
 
@@ -94,6 +94,7 @@ class GivenFunction(ProblemFunction):
         vectorized: bool | None = None,
         threads: int = 1,
         name: str = "",
+        may_fail: bool = False,
     ) -> None:
         def stated(name: str, given: Any, otherwise: Any = None) -> Any:
             own = getattr(function, name, None) if given is None else given
@@ -121,7 +122,7 @@ class GivenFunction(ProblemFunction):
         self.threads = whole("threads", threads, 1, 1_000)
         self._function = function
         self._vectorized = _said(stated("vectorized", vectorized))
-        self._first_failures = FirstFailures()
+        self._first_failures = None if may_fail else FirstFailures()
 
     @property
     def of_model(self) -> bool:
@@ -144,7 +145,8 @@ class GivenFunction(ProblemFunction):
         """Write the values of candidates into a table, each row or block as it is evaluated."""
         if len(candidates):
             self._fill(candidates, values)
-        self._first_failures.note(self._name, values[:, 0] >= UNUSABLE)
+        if self._first_failures is not None:
+            self._first_failures.note(self._name, values[:, 0] >= UNUSABLE)
 
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
@@ -314,7 +316,7 @@ class FirstFailures:
             self._count = None
             return
         self._count += len(failed)
-        if self._count >= _ALL_FAILED:
+        if self._count >= ALL_FAILED:
             raise ValueError(
                 f"{name} gives no finite numbers (nan or infinite) for the first {self._count} "
                 "candidates; mend it, or give other bounds"

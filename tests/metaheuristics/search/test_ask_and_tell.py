@@ -126,6 +126,23 @@ def test_a_candidate_is_asked_for_until_it_is_told_and_failures_are_counted():
     assert search.front().failed == 1
 
 
+@pytest.mark.parametrize("method", ["es", "nsga2"])
+def test_a_machine_that_fails_at_first_is_mended_and_the_search_goes_on(method, tmp_path):
+    state = tmp_path / "run.json"
+    failing = search_of(method, state=state)
+    for _ in range(19):
+        failing.tell(failing.ask(), np.nan)
+    with pytest.warns(UserWarning, match=r"all 20 candidates .* have failed; .*run.json keeps"):
+        failing.tell(failing.ask(), np.nan)
+    failing.tell(failing.ask(), np.nan)  # said once
+    failing.close()
+    mended = search_of(method, state=state)
+    assert mended.evaluations == 21
+    front = run(mended)
+    assert front.failed == 21
+    assert front.points
+
+
 def test_a_closed_search_is_asked_and_told_nothing():
     closed = search_of()
     first, *others = closed.ask(9)
