@@ -106,9 +106,25 @@ class SearchState(Answer):
         return {**entries, "told": [told.texts for told in self.told]}
 
     def differences(self, other: SearchState) -> list[str]:
-        """Names of what another search would be asked for in another way."""
-        names = [entry.name for entry in fields(self) if entry.name not in ("told", "versions")]
-        return [name for name in names if getattr(self, name) != getattr(other, name)]
+        """What another search would be asked for in another way, such as: seed is 3, not 4.
+
+        The number of evaluations may be another: what is asked for tells whether that matters.
+        """
+        ours, others = self._stated(), other._stated()
+        return [
+            f"{_with_verb(name)} {_shown(value)}, not {_shown(others[name])}"
+            for name, value in ours.items()
+            if value != others[name]
+        ]
+
+    def _stated(self) -> dict[str, Any]:
+        """What was asked for, by name."""
+        own = ("told", "versions", "evaluations", "function")
+        named = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        of_function = {
+            entry.name: getattr(self.function, entry.name) for entry in fields(self.function)
+        }
+        return of_function | {name: named[name] for name in named if name not in own}
 
 
 class Search:
@@ -127,7 +143,7 @@ class Search:
     state : path, optional
         A file that has what was told, written anew after each evaluation and never half-written.
         Where it exists the search goes on from it, and gives the same answer as one that was never
-        interrupted.
+        interrupted; also with more evaluations, unless the method then asks for other candidates.
 
     Raises
     ------
@@ -207,6 +223,7 @@ class Search:
                 problem.reference or (),
             )
         )
+        self._begun_with = self._state.evaluations
         self._written = _stamp(self._path)
         self._known = {told.number: told for told in self._resumed()}
         self._told = list[Told]()
@@ -327,10 +344,15 @@ class Search:
         before = SearchState.load(self._path)
         if differences := before.differences(self._state):
             raise ValueError(
-                f"{self._path} is of another search: its {', '.join(differences)} "
-                f"{'differs' if len(differences) == 1 else 'differ'}; give what it was begun with, "
-                "or another file"
+                f"{self._path} is of another search: its {', its '.join(differences)}; give what "
+                "it was begun with, or another file"
             )
+        if before.evaluations > self._state.evaluations:
+            raise ValueError(
+                f"{self._path} is of {before.evaluations} evaluations, not "
+                f"{self._state.evaluations}; give {before.evaluations} or more, or another file"
+            )
+        self._begun_with = before.evaluations
         return before.told
 
     def _warn_of_failures(self, before: int) -> None:
@@ -427,12 +449,22 @@ class Search:
         self._values = [self._known.get(before + i + 1) for i in range(len(asked))]
         for told, row in zip(self._values, asked):
             if told is not None and told.coefficients != tuple(row.tolist()):
-                raise ValueError(
-                    f"{self._path} is of another version: its candidate {told.number} is not the "
-                    "one that is asked for here; go on with the versions that it names, or give "
-                    "another file"
-                )
+                raise ValueError(self._why_another(told.number))
         return True
+
+    def _why_another(self, number: int) -> str:
+        """Say why the file has another candidate than the one that is asked for here."""
+        evaluations = self._state.evaluations
+        if self._begun_with != evaluations:
+            return (
+                f"{self._path} was begun with {self._begun_with} evaluations, and with "
+                f"{evaluations} {self._state.method} asks for another candidate {number}; give "
+                f"{self._begun_with}, or another file"
+            )
+        return (
+            f"{self._path} is of another version: its candidate {number} is not the one that is "
+            "asked for here; go on with the versions that it names, or give another file"
+        )
 
     def _refuse_if_closed(self) -> None:
         """Refuse to ask or tell a search that is closed: its method would never answer."""
@@ -494,6 +526,17 @@ def _stamp(path: Path | None) -> tuple[int, int] | None:
         return None
     status = path.stat()
     return status.st_mtime_ns, status.st_ino
+
+
+def _with_verb(name: str) -> str:
+    return f"{name} {'are' if name.endswith('s') else 'is'}"
+
+
+def _shown(value: Any) -> str:
+    """A value of a state in a few words."""
+    if value is None or value == () or value == {}:
+        return "not given"
+    return quoted(list(value) if isinstance(value, tuple) else value)
 
 
 def _or_none(values: Array) -> Numbers:

@@ -38,10 +38,9 @@ def measure(x):
     return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2], [x[0] - 1]
 
 
-def search_of(method="es", **more):
-    return qa.Search(
-        [-5, -5], 5, evaluations=45, algorithm=method, constraints=["wall"], seed=3, **more
-    )
+def search_of(method="es", evaluations=45, **more):
+    options = {"constraints": ["wall"], "seed": 3, "upper": 5} | more
+    return qa.Search([-5, -5], evaluations=evaluations, algorithm=method, **options)
 
 
 def run(search):
@@ -179,11 +178,48 @@ def test_what_cannot_be_meant_is_refused_in_one_line(told, words):
     search.tell(search.ask(), *measure(search.ask()))  # and it goes on
 
 
+@pytest.mark.parametrize("method", ["es", "nsga2"])
+def test_a_finished_search_goes_on_with_more_evaluations(method, tmp_path):
+    state = tmp_path / "run.json"
+    run(search_of(method, 25, state=state))  # the last generation of nsga2 is cut short
+    extended = search_of(method, 45, state=state)
+    assert extended.evaluations == 25
+    assert run(extended) == run(search_of(method))
+    with pytest.raises(ValueError, match="is of 45 evaluations, not 25; give 45 or more"):
+        search_of(method, 25, state=state)
+
+
+def test_a_search_that_depends_on_its_budget_is_not_extended(tmp_path):
+    state = tmp_path / "run.json"
+    run(search_of("nsga2", 20, state=state))
+    before = state.read_text()
+    # of 1,000 candidates the population is 20, of 20 it is 10
+    with pytest.raises(ValueError, match=r"with 1000 nsga2 asks for another candidate 11; give 20"):
+        search_of("nsga2", 1000, state=state)
+    assert state.read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ({"upper": 6}, r"its upper is \[5.0, 5.0\], not \[6.0, 6.0\];"),
+        ({"units": ["mm", "J"]}, r"its units are \['m', 'J'\], not \['mm', 'J'\];"),
+        ({"seed": 4, "settings": {"first": 7}}, r"seed is 3, not 4, its settings are not given, "),
+    ],
+)
+def test_what_differs_from_a_state_is_named_with_both_values(other, words, tmp_path):
+    state = tmp_path / "run.json"
+    begun = search_of(state=state)
+    begun.tell(begun.ask(), *measure(begun.ask()))
+    with pytest.raises(ValueError, match=words):
+        search_of(state=state, **other)
+
+
 def test_a_state_of_another_search_is_refused(tmp_path):
     state = tmp_path / "run.json"
     begun = search_of(state=state)
     begun.tell(begun.ask(), *measure(begun.ask()))
-    with pytest.raises(ValueError, match="its method differs"):
+    with pytest.raises(ValueError, match="its method is 'es', not 'nsga2'"):
         search_of("nsga2", state=state)
     begun.tell(begun.ask(), *measure(begun.ask()))
     state.write_text("{}")
