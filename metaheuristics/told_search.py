@@ -291,6 +291,8 @@ class Search:
         function = self._state.function
         rows = table_of(np.atleast_2d(numbers("candidates", candidates, "numbers")), function.size)
         count = len(rows)
+        if violations is None:
+            self._refuse_pair(objectives, count)
         values = self._table("objectives", objectives, count, function.objectives)
         if violations is None and np.isnan(values).all():
             violations = np.nan  # what failed has none
@@ -354,6 +356,17 @@ class Search:
             )
         self._begun_with = before.evaluations
         return before.told
+
+    def _refuse_pair(self, objectives: Any, candidates: int) -> None:
+        """Refuse what a function with constraints returns, in the place of its objectives."""
+        from quietarm.metaheuristics.problems.given_function import is_pair
+
+        if not is_pair(objectives, candidates):
+            return
+        remedy = "tell them apart, such as tell(candidate, *measure(candidate))"
+        if not self._state.function.constraints:
+            remedy += ", and name the violations when the search begins, by constraints=[...]"
+        raise ValueError(f"objectives are two, objectives and violations; {remedy}")
 
     def _warn_of_failures(self, before: int) -> None:
         """Say once that nothing but failures was told, after so many as a function may have."""

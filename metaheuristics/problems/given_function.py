@@ -64,7 +64,7 @@ class GivenFunction(ProblemFunction):
         Whether it takes many candidates at once. Where this is not said, the function is called
         with one candidate first; an array of candidates follows where it returns rows, or where it
         fails as functions of arrays do, with an IndexError, a TypeError or a ValueError. So no
-        candidate that was evaluated is evaluated again.
+        candidate that was evaluated is evaluated again; a first call that fails is no evaluation.
     threads : int
         Calls at the same time: of blocks of candidates, or of candidates.
     name : str, optional
@@ -203,7 +203,12 @@ class GivenFunction(ProblemFunction):
             return self._as_array(row, alone)
         of_many = _dimensions(result[0]) == 2  # it makes rows, of numbers or of the candidate
         if of_many and len(result[0]) != 1:
-            return self._as_array(row)
+            try:
+                return self._as_array(row)
+            except ValueError as error:
+                if is_pair(result[0], 0) and not self.constraints:
+                    raise self._no_names(result[0]) from error
+                raise
         self._vectorized = of_many
         return self._rows_of(*result, 1) if of_many else self._row_of(*result)
 
@@ -217,7 +222,8 @@ class GivenFunction(ProblemFunction):
             if str(alone) == str(as_array):
                 raise alone from None
             raise ValueError(
-                f"{alone} (called with one candidate; with an array of them: {as_array})"
+                f"{alone} (called with one candidate; with an array of them: {as_array}); "
+                "vectorized=True or False says which of them it takes"
             ) from None
         self._vectorized = True
         return values
@@ -264,13 +270,30 @@ class GivenFunction(ProblemFunction):
         if self.constraints:
             raise ValueError(
                 f"{self._name} returns {_kind(result)}; with constraints give two: (objectives, "
-                "violations)"
+                "violations), such as (1.0, 2.0), [-0.1]"
             )
+        of_rows = 2 if self._vectorized is None else 0  # it may make rows of a candidate's numbers
+        if is_pair(result, len(argument) if argument.ndim == 2 else of_rows):
+            raise self._no_names(result)
         return result, None
+
+    def _no_names(self, result: Any) -> ValueError:
+        """Error to raise where a function returns violations whose names are not given."""
+        shape = _shape(result[1]) or (1,)
+        of_many = _dimensions(result[0]) == 2
+        count = shape[-1] if len(shape) == 1 + of_many else 1
+        names = ["touch"] if count == 1 else [f"limit_{i + 1}" for i in range(min(count, 9))]
+        return ValueError(
+            f"{self._name} returns two, objectives and violations, and no constraints are named; "
+            f"name the violations, such as constraints={names}, or set this as its attribute "
+            "`constraints`"
+        )
 
     def _is_pair(self, result: tuple[Any, Any]) -> bool:
         """Return whether a tuple of two is objectives with violations, not two objectives."""
-        second = result[1]
+        first, second = result
+        if self.constraints and np.ndim(first) == 0 and not _is_nan(first):
+            return False  # two numbers: objectives alone
         empty = getattr(second, "size", None) == 0 or (
             isinstance(second, list | tuple) and not second
         )
@@ -338,6 +361,28 @@ def failure_of(name: str, function: Function, error: Exception) -> FunctionFaile
     )
 
 
+def is_pair(result: Any, candidates: int) -> bool:
+    """Return whether what is returned can only be objectives with violations, as a tuple.
+
+    Of two candidates it may be a row of objectives for each; with 0 candidates nothing speaks
+    against a pair.
+    """
+    if not (isinstance(result, tuple) and len(result) == 2):
+        return False
+    shapes = [_shape(part) for part in result]
+    if shapes[0] == ():
+        return False
+    return candidates != 2 or shapes[0] != shapes[1] or len(shapes[0] or ()) == 2
+
+
+def _shape(value: Any) -> tuple[int, ...] | None:
+    """Return the shape of an array; None of rows of different lengths."""
+    try:
+        return np.shape(value)
+    except ValueError:
+        return None
+
+
 def _write(evaluated: Array, rows: Array) -> None:
     """Write what was evaluated into its rows of a table; what failed is unusable there."""
     replace_failures(evaluated)
@@ -389,4 +434,8 @@ def _corner(reference: Any, objectives: Sequence[str]) -> tuple[float, ...] | No
 
 def _kind(result: Any) -> str:
     """Say in a word or two what was returned."""
-    return "nothing" if result is None else f"one {type(result).__name__}"
+    if result is None:
+        return "nothing"
+    shape = _shape(result)
+    size = f" of {shape[0]}" if shape else ""
+    return f"one {type(result).__name__}{size}"

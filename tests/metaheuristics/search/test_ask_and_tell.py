@@ -157,6 +157,9 @@ def test_violations_where_there_are_no_constraints_are_refused():
     free = qa.Search([-5, -5], 5, evaluations=10, algorithm="es")
     with pytest.raises(ValueError, match="the search has no violations; leave them out"):
         free.tell(free.ask(), [1.0, 2.0], [0.5])
+    with pytest.raises(ValueError, match=r"name the violations .* by constraints=\[...\]"):
+        free.tell(free.ask(), ([1.0, 2.0], [0.5]))
+    free.tell(free.ask(2), ((1.0, 2.0), (3.0, 4.0)))  # a row for each is no pair
 
 
 @pytest.mark.parametrize(
@@ -166,6 +169,7 @@ def test_violations_where_there_are_no_constraints_are_refused():
         ((None, [1.0], [0.0]), "objectives have shape"),
         ((None, [1.0, 2.0], None), "violations are missing"),
         ((None, ["one", 2.0], [0.0]), "objectives are"),
+        ((None, ([1.0, 2.0], [0.0]), None), r"such as tell\(candidate, \*measure\(candidate\)\)"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_in_one_line(told, words):
