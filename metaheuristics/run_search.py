@@ -339,14 +339,19 @@ class SearchRun:
             method = algorithm
             preset = preset_of(algorithm)
             preset.refuse_unfit(objectives, noise, of_model=of_move)
-            chosen, stated = _of_preset(
-                preset, limited, population, evaluations, settings, objectives
-            )
+            if limited and not preset.keeps_limits:
+                name = "limits" if of_move else "constraints"
+                raise ValueError(
+                    f"{method} cannot search a {'task' if of_move else 'function'} with {name}; "
+                    f"choose another method, such as moead-de, or leave the {name} out"
+                )
+            chosen, stated = _of_preset(preset, population, evaluations, settings, objectives)
             size = preset.evaluations(stated["population"], 1, objectives)
             usual = preset.generations
             if preset.is_function and start is not None:
                 raise ValueError(
-                    f"{method} begins where its seed says; leave the front to start from out"
+                    f"{method} cannot start from a front; leave start (--from) out, or choose a "
+                    "method with a population"
                 )
             if preset.is_function and evaluations is None:  # it knows no generations
                 evaluations = preset.generations if generations is None else generations
@@ -448,7 +453,9 @@ def _set_up(
         algorithm.setup(problem, termination=termination, seed=seed)
     except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
         name = type(algorithm).__name__
-        raise ValueError(f"{name} cannot search this task: {error}") from None
+        raise ValueError(
+            f"{name} cannot search this: {error}; choose another method, such as moead-de"
+        ) from None
     if evaluations and isinstance(algorithm.termination, MaximumGenerationTermination):
         # pymoo's RVEA makes generations of evaluations, one too few
         generations = -(-evaluations // algorithm.n_offsprings)
@@ -544,7 +551,6 @@ def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
 
 def _of_preset(
     preset: Preset,
-    limited: bool,
     population: int | None,
     evaluations: int | None,
     settings: Mapping[str, object] | None,
@@ -552,11 +558,6 @@ def _of_preset(
 ) -> tuple[Any, dict[str, Any]]:
     """A method that is known by name, and what it is set to, for so many objectives."""
     most = 100_000
-    if limited and not preset.keeps_limits:
-        raise ValueError(
-            f"{preset.name} cannot search a task with limits; choose another method, or leave "
-            "the limits out"
-        )
     size = whole(
         "population",
         preset.population_for(evaluations) if population is None else population,

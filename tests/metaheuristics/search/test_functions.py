@@ -217,6 +217,7 @@ def test_what_was_evaluated_before_a_stop_is_in_the_front_of_the_run(method, thr
     assert all(list(point.coefficients) in evaluated for point in front.points)
 
 
+@pytest.mark.usefixtures("what_is_made_up_is_forgotten")
 @pytest.mark.parametrize(
     ("method", "budget", "steps"),
     [
@@ -279,8 +280,17 @@ def broken(x):
         (parabolas, {"bound": 0.2}, "bound is for a task"),
         (parabolas, {"objectives": ["one"]}, "give two or more"),
         (parabolas, {"units": ["m"]}, "2 objectives have 1 units"),
-        (parabolas, {"constraints": ["wall"]}, "with constraints give two"),
+        (parabolas, {"constraints": ["wall"]}, "one list of 2; with constraints give two"),
+        (lambda x: (*parabolas(x),), {"constraints": ["wall"]}, "one tuple of 2; with const"),
+        (limited, {}, r"no constraints are named; .* constraints=\['touch'\]"),
+        (lambda x: (parabolas(x), x[0]), {}, "no constraints are named"),
+        (lambda x: (parabolas(x), [x[0], x[1]]), {}, "no constraints are named"),
+        (lambda x: (many(x), x), {"vectorized": True}, r"constraints=\['limit_1', 'limit_2'\]"),
         (parabolas, {"algorithm": "memetic"}, "a function has none"),
+        (limited, {"algorithm": "moead", "constraints": ["wall"]}, "a function with constraints"),
+        (parabolas, {"algorithm": "epsilon"}, "takes the gradient of a plant's model"),
+        (parabolas, {"algorithm": "nsga2+polish"}, "give 'nsga2', and its front to polish_front"),
+        (parabolas, {"noise": "5%"}, "as a number, such as 0.01 for 1 %"),
         (lambda x: [1.0, 2.0, 3.0], {}, r"objectives of shape \(3,\), not \(2,\)"),
         (lambda x: [1.0, [2.0, 3.0]], {}, r"objectives are \[1.0, \[2.0, 3.0\]\]; give numbers"),
         (parabolas, {"constraints": "wall"}, r"names, such as \['touch'\]"),
