@@ -59,7 +59,7 @@ class Told:
 
     @cached_property
     def texts(self) -> Texts:
-        """Its texts in the file of a state, made once, however often that is written."""
+        """Texts in the file of a state, made once, however often that is written."""
         return texts_of(plain(self), margin="\n    ")
 
 
@@ -106,7 +106,7 @@ class SearchState(Answer):
         return {**entries, "told": [told.texts for told in self.told]}
 
     def differences(self, other: SearchState) -> list[str]:
-        """What another search would be asked for in another way, such as: seed is 3, not 4.
+        """List what another search would be asked for in another way, such as: seed is 3, not 4.
 
         The number of evaluations may be another: what is asked for tells whether that matters.
         """
@@ -118,7 +118,7 @@ class SearchState(Answer):
         ]
 
     def _stated(self) -> dict[str, Any]:
-        """What was asked for, by name."""
+        """Return what was asked for, by name."""
         own = ("told", "versions", "evaluations", "function")
         named = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         of_function = {
