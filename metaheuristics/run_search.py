@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -41,12 +42,13 @@ SEARCH_RESIDUAL = 1e-3
 
 @dataclass(frozen=True)
 class SearchProgress:
-    """Progress of a search after a generation.
+    """Progress of a search after a generation, or after a candidate.
 
     Attributes
     ----------
     generation, generations : int
-        Generations done and asked for.
+        Generations done and asked for; of a method that has none, such as gp, es and slsqp,
+        candidates.
     residual, energy : float
         Least residual [m] and least energy [J] found, of different candidates as a rule.
     hypervolume : float
@@ -59,6 +61,8 @@ class SearchProgress:
         Units of the first two objectives.
     names : (str, str)
         Their names; a user's own function has others than residual and energy.
+    step : str
+        What is counted: generation or candidate.
     """
 
     generation: int
@@ -73,6 +77,7 @@ class SearchProgress:
     tip_unit: str = "m"
     energy_unit: str = "J"
     names: tuple[str, str] = ("residual", "energy")
+    step: str = "generation"
 
 
 @takes(start=Front)
@@ -138,10 +143,12 @@ def search(
     start : Front, optional
         Its points are in the first population, as many as that holds.
     report : callable, optional
-        Called with a `SearchProgress` after every generation.
+        Called with a `SearchProgress` after every generation. Of a method without generations,
+        such as gp, after each call of the function; where it has more than 200, after each half per
+        cent of the candidates, or a second.
     begun : callable, optional
-        Called with the run before its first candidate: after Ctrl-C the `front` of that run has
-        what was found until then.
+        Called with the run before its first candidate: after Ctrl-C, or an error of a function, the
+        `front` of that run has what was found until then.
     objectives : sequence of str
         Residual and energy, and peaks beside them, as ``"peak_torque"``; of a function any names.
     energy : callable, optional
@@ -332,14 +339,19 @@ class SearchRun:
             method = algorithm
             preset = preset_of(algorithm)
             preset.refuse_unfit(objectives, noise, of_model=of_move)
-            chosen, stated = _of_preset(
-                preset, limited, population, evaluations, settings, objectives
-            )
+            if limited and not preset.keeps_limits:
+                name = "limits" if of_move else "constraints"
+                raise ValueError(
+                    f"{method} cannot search a {'task' if of_move else 'function'} with {name}; "
+                    f"choose another method, such as moead-de, or leave the {name} out"
+                )
+            chosen, stated = _of_preset(preset, population, evaluations, settings, objectives)
             size = preset.evaluations(stated["population"], 1, objectives)
             usual = preset.generations
             if preset.is_function and start is not None:
                 raise ValueError(
-                    f"{method} begins where its seed says; leave the front to start from out"
+                    f"{method} cannot start from a front; leave start (--from) out, or choose a "
+                    "method with a population"
                 )
             if preset.is_function and evaluations is None:  # it knows no generations
                 evaluations = preset.generations if generations is None else generations
@@ -377,11 +389,32 @@ class SearchRun:
         """Run it to its end."""
         from quietarm.metaheuristics.problems.recorded import BudgetSpentError
 
+        reports = None if report is None else _Reports(self, report)
         # a division by a distance of zero is of no concern to a user
         with np.errstate(all="ignore"), suppress(BudgetSpentError):
-            for done in _run(self.chosen, self.function, self.seed, self.first, self.limits):
-                if report is not None:
-                    report(_progress(self.function, done, self.generations))
+            self._finish(reports)
+        if reports is not None:
+            reports.end()
+
+    def _finish(self, reports: _Reports | None) -> None:
+        from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
+
+        if not self.has_generations:
+            if reports is not None:
+                self.function.after_call = reports.candidates_done
+            self.chosen(self.function, self.seed, self.limits["evaluations"])
+            return
+        _set_up(self.chosen, PymooProblem(self.function), self.seed, **self.limits)
+        for done, _ in enumerate(_generations(self.chosen, self.first), start=1):
+            if reports is not None:
+                reports.generation_done(done)
+
+    @property
+    def has_generations(self) -> bool:
+        """Return whether the method goes on by generations; others know candidates alone."""
+        from pymoo.core.algorithm import Algorithm as PymooAlgorithm
+
+        return isinstance(self.chosen, PymooAlgorithm)
 
     def front(self) -> Front:
         """Make the front of what was found until now."""
@@ -405,26 +438,6 @@ def _profile_of(profile: object) -> JointProfile:
     return instance("profile", profile, JointProfile)
 
 
-def _run(
-    method: Any,
-    function: RecordedFunction,
-    seed: int,
-    first: NDArray[np.float64],
-    limits: Mapping[str, int],
-) -> Iterator[int]:
-    """Run a method and yield the generations that are done; a function has one."""
-    from pymoo.core.algorithm import Algorithm as PymooAlgorithm
-
-    from quietarm.metaheuristics.problems.pymoo_problem import PymooProblem
-
-    if not isinstance(method, PymooAlgorithm):
-        method(function, seed, limits["evaluations"])
-        yield 1
-        return
-    _set_up(method, PymooProblem(function), seed, **limits)
-    yield from (done for done, _ in enumerate(_generations(method, first), start=1))
-
-
 def _set_up(
     algorithm: Any, problem: Any, seed: int, generations: int = 0, evaluations: int = 0
 ) -> None:
@@ -440,7 +453,9 @@ def _set_up(
         algorithm.setup(problem, termination=termination, seed=seed)
     except AssertionError as error:  # how pymoo's MOEA/D refuses constraints
         name = type(algorithm).__name__
-        raise ValueError(f"{name} cannot search this task: {error}") from None
+        raise ValueError(
+            f"{name} cannot search this: {error}; choose another method, such as moead-de"
+        ) from None
     if evaluations and isinstance(algorithm.termination, MaximumGenerationTermination):
         # pymoo's RVEA makes generations of evaluations, one too few
         generations = -(-evaluations // algorithm.n_offsprings)
@@ -463,13 +478,50 @@ def _generations(algorithm: Any, first: NDArray[np.float64]) -> Iterator[None]:
         yield
 
 
-def _progress(function: RecordedFunction, done: int, generations: int) -> SearchProgress:
+class _Reports:
+    """Reports of the progress of a run."""
+
+    def __init__(self, run: SearchRun, report: Callable[[SearchProgress], None]) -> None:
+        self._run = run
+        self._report = report
+        self._generations_done = 0
+        self._evaluations = 0
+        self._at = time.monotonic()
+
+    def generation_done(self, done: int) -> None:
+        """Report a generation."""
+        self._generations_done = done
+        self._say(done)
+
+    def candidates_done(self) -> None:
+        """Report candidates, unless it would be too often."""
+        most = 200  # a report compares all that was found
+        rarest = 1.0  # s
+        done = self._run.function.archive.evaluations
+        is_some = done - self._evaluations >= self._run.generations / most
+        if done > self._evaluations and (is_some or time.monotonic() - self._at >= rarest):
+            self._say(done)
+
+    def end(self) -> None:
+        """Report what the last candidates have changed, if they were no whole generation."""
+        evaluations = self._run.function.archive.evaluations
+        if evaluations > self._evaluations:
+            self._say(self._generations_done + 1 if self._run.has_generations else evaluations)
+
+    def _say(self, done: int) -> None:
+        self._evaluations = self._run.function.archive.evaluations
+        self._report(_progress(self._run, done))
+        self._at = time.monotonic()
+
+
+def _progress(run: SearchRun, done: int) -> SearchProgress:
+    function = run.function
     archive = function.archive
     F = archive.non_dominated()[1]
     residual, energy = F.min(axis=0).tolist()[:2] if len(F) else (nan, nan)
     return SearchProgress(
         done,
-        max(generations, done),
+        max(run.generations, done),
         residual,
         energy,
         archive.share_of_box(),
@@ -479,6 +531,7 @@ def _progress(function: RecordedFunction, done: int, generations: int) -> Search
         function.infeasible,
         *function.units[:2],
         names=(function.objectives[0], function.objectives[1]),
+        step="generation" if run.has_generations else "candidate",
     )
 
 
@@ -498,7 +551,6 @@ def _starts(front: Front, function: RecordedFunction) -> NDArray[np.float64]:
 
 def _of_preset(
     preset: Preset,
-    limited: bool,
     population: int | None,
     evaluations: int | None,
     settings: Mapping[str, object] | None,
@@ -506,11 +558,6 @@ def _of_preset(
 ) -> tuple[Any, dict[str, Any]]:
     """A method that is known by name, and what it is set to, for so many objectives."""
     most = 100_000
-    if limited and not preset.keeps_limits:
-        raise ValueError(
-            f"{preset.name} cannot search a task with limits; choose another method, or leave "
-            "the limits out"
-        )
     size = whole(
         "population",
         preset.population_for(evaluations) if population is None else population,

@@ -12,6 +12,7 @@ import threading
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -25,9 +26,10 @@ from quietarm.ocp import Front
 from quietarm.ocp.checks import Count, CountFromOne, numbers, quoted, table_of, whole
 from quietarm.ocp.files import check_writable
 from quietarm.ocp.front.searched_function import SearchedFunction
+from quietarm.ocp.json_text import Texts, texts_of
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Setting, versions
-from quietarm.ocp.saved import Answer, as_loaded
+from quietarm.ocp.saved import Answer, as_loaded, plain
 
 Array = NDArray[np.float64]
 Numbers = tuple[float | None, ...]
@@ -49,6 +51,16 @@ class Told:
     coefficients: tuple[float, ...]
     objectives: Numbers
     violations: Numbers = ()
+
+    @property
+    def failed(self) -> bool:
+        """Return whether one of its values was not finite."""
+        return None in self.objectives or None in self.violations
+
+    @cached_property
+    def texts(self) -> Texts:
+        """Texts in the file of a state, made once, however often that is written."""
+        return texts_of(plain(self), margin="\n    ")
 
 
 @dataclass(frozen=True)
@@ -89,10 +101,30 @@ class SearchState(Answer):
     told: tuple[Told, ...] = ()
     versions: Mapping[str, str] = field(default_factory=versions, hash=False)
 
+    def _content(self) -> dict[str, Any]:
+        entries = plain(replace(self, told=()))
+        return {**entries, "told": [told.texts for told in self.told]}
+
     def differences(self, other: SearchState) -> list[str]:
-        """Names of what another search would be asked for in another way."""
-        names = [entry.name for entry in fields(self) if entry.name not in ("told", "versions")]
-        return [name for name in names if getattr(self, name) != getattr(other, name)]
+        """List what another search would be asked for in another way, such as: seed is 3, not 4.
+
+        The number of evaluations may be another: what is asked for tells whether that matters.
+        """
+        ours, others = self._stated(), other._stated()
+        return [
+            f"{_with_verb(name)} {_shown(value)}, not {_shown(others[name])}"
+            for name, value in ours.items()
+            if value != others[name]
+        ]
+
+    def _stated(self) -> dict[str, Any]:
+        """Return what was asked for, by name."""
+        own = ("told", "versions", "evaluations", "function")
+        named = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        of_function = {
+            entry.name: getattr(self.function, entry.name) for entry in fields(self.function)
+        }
+        return of_function | {name: named[name] for name in named if name not in own}
 
 
 class Search:
@@ -111,7 +143,7 @@ class Search:
     state : path, optional
         A file that has what was told, written anew after each evaluation and never half-written.
         Where it exists the search goes on from it, and gives the same answer as one that was never
-        interrupted.
+        interrupted; also with more evaluations, unless the method then asks for other candidates.
 
     Raises
     ------
@@ -155,8 +187,9 @@ class Search:
         self._path = None if state is None else check_writable(state)
         self._exchange = _Exchange()
         # not at the top: it loads pymoo, which takes longer than all of quietarm
-        from quietarm.metaheuristics.problems.given_function import GivenFunction
+        from quietarm.metaheuristics.problems.given_function import ALL_FAILED, GivenFunction
 
+        self._most_failures = ALL_FAILED
         problem = GivenFunction(
             self._exchange,
             lower=lower,
@@ -167,6 +200,7 @@ class Search:
             reference=reference,
             vectorized=True,
             name=name,
+            may_fail=True,  # whoever tells failures knows of them, and may mend the machine
         )
         self._run = SearchRun.begin(
             problem,
@@ -189,6 +223,7 @@ class Search:
                 problem.reference or (),
             )
         )
+        self._begun_with = self._state.evaluations
         self._written = _stamp(self._path)
         self._known = {told.number: told for told in self._resumed()}
         self._told = list[Told]()
@@ -237,6 +272,8 @@ class Search:
     ) -> None:
         """Tell what a candidate, or several, came to; what is not finite counts as failed.
 
+        Where the first 20 have failed, a warning says so; the search goes on.
+
         Parameters
         ----------
         candidates : array_like, shape (coefficients,) or (candidates, coefficients)
@@ -254,6 +291,8 @@ class Search:
         function = self._state.function
         rows = table_of(np.atleast_2d(numbers("candidates", candidates, "numbers")), function.size)
         count = len(rows)
+        if violations is None:
+            self._refuse_pair(objectives, count)
         values = self._table("objectives", objectives, count, function.objectives)
         if violations is None and np.isnan(values).all():
             violations = np.nan  # what failed has none
@@ -268,10 +307,12 @@ class Search:
                 _or_none(of_candidate),
                 _or_none(passed),
             )
+        before = self.evaluations - count
         self._save()
         if all(told is not None for told in self._values):
             self._hand_over()
             self._go_on()
+        self._warn_of_failures(before)
 
     def front(self) -> Front:
         """The front of what was told until now, a `FunctionFront`; ValueError before that.
@@ -305,11 +346,40 @@ class Search:
         before = SearchState.load(self._path)
         if differences := before.differences(self._state):
             raise ValueError(
-                f"{self._path} is of another search: its {', '.join(differences)} "
-                f"{'differs' if len(differences) == 1 else 'differ'}; give what it was begun with, "
-                "or another file"
+                f"{self._path} is of another search: its {', its '.join(differences)}; give what "
+                "it was begun with, or another file"
             )
+        if before.evaluations > self._state.evaluations:
+            raise ValueError(
+                f"{self._path} is of {before.evaluations} evaluations, not "
+                f"{self._state.evaluations}; give {before.evaluations} or more, or another file"
+            )
+        self._begun_with = before.evaluations
         return before.told
+
+    def _refuse_pair(self, objectives: Any, candidates: int) -> None:
+        """Refuse what a function with constraints returns, in the place of its objectives."""
+        from quietarm.metaheuristics.problems.given_function import is_pair
+
+        if not is_pair(objectives, candidates):
+            return
+        remedy = "tell them apart, such as tell(candidate, *measure(candidate))"
+        if not self._state.function.constraints:
+            remedy += ", and name the violations when the search begins, by constraints=[...]"
+        raise ValueError(f"objectives are two, objectives and violations; {remedy}")
+
+    def _warn_of_failures(self, before: int) -> None:
+        """Say once that nothing but failures was told, after so many as a function may have."""
+        if not before < self._most_failures <= self.evaluations:
+            return
+        known = [*self._told, *(told for told in self._values if told is not None)]
+        if all(told.failed for told in known):
+            kept = "" if self._path is None else f"; {self._path} keeps them"
+            warnings.warn(
+                f"all {len(known)} candidates that were told have failed{kept}; mend what measures "
+                "and go on, failures count as candidates, or begin again with other bounds",
+                stacklevel=7,  # tell() is an operation, which has four frames of its own
+            )
 
     def _place_of(self, row: Array, taken: Sequence[int]) -> int:
         """Return which of the candidates that wait is meant."""
@@ -392,12 +462,22 @@ class Search:
         self._values = [self._known.get(before + i + 1) for i in range(len(asked))]
         for told, row in zip(self._values, asked):
             if told is not None and told.coefficients != tuple(row.tolist()):
-                raise ValueError(
-                    f"{self._path} is of another version: its candidate {told.number} is not the "
-                    "one that is asked for here; go on with the versions that it names, or give "
-                    "another file"
-                )
+                raise ValueError(self._why_another(told.number))
         return True
+
+    def _why_another(self, number: int) -> str:
+        """Say why the file has another candidate than the one that is asked for here."""
+        evaluations = self._state.evaluations
+        if self._begun_with != evaluations:
+            return (
+                f"{self._path} was begun with {self._begun_with} evaluations, and with "
+                f"{evaluations} {self._state.method} asks for another candidate {number}; give "
+                f"{self._begun_with}, or another file"
+            )
+        return (
+            f"{self._path} is of another version: its candidate {number} is not the one that is "
+            "asked for here; go on with the versions that it names, or give another file"
+        )
 
     def _refuse_if_closed(self) -> None:
         """Refuse to ask or tell a search that is closed: its method would never answer."""
@@ -459,6 +539,17 @@ def _stamp(path: Path | None) -> tuple[int, int] | None:
         return None
     status = path.stat()
     return status.st_mtime_ns, status.st_ino
+
+
+def _with_verb(name: str) -> str:
+    return f"{name} {'are' if name.endswith('s') else 'is'}"
+
+
+def _shown(value: Any) -> str:
+    """A value of a state in a few words."""
+    if value is None or value == () or value == {}:
+        return "not given"
+    return quoted(list(value) if isinstance(value, tuple) else value)
 
 
 def _or_none(values: Array) -> Numbers:

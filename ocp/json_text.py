@@ -24,10 +24,13 @@ def texts_of(document: Any, margin: str = "\n") -> Texts:
     """Both texts of a document in JSON's types; ValueError where a number is none of JSON.
 
     A list of numbers or texts stands on one line. The canonical text is the same however a program
-    that saved a file again wrote its numbers and spaces.
+    that saved a file again wrote its numbers and spaces. An entry may be `Texts` already, made with
+    the margin of its place.
     """
     inner = f"{margin}  "
     match document:
+        case Texts():
+            return document
         case dict() if document:
             return _texts_of_entries(document, margin)
         case list() if not LEAVES.issuperset(map(type, document)):

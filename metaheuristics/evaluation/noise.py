@@ -24,8 +24,8 @@ def noise_share(value: object) -> float:
     is_number = isinstance(value, Real) and not isinstance(value, bool)
     if not (is_number and 0 <= number <= 1):  # nor NaN
         raise ValueError(
-            f"noise is {value!r}, not a share from 0 to 1; give the standard deviation as a share, "
-            "as 0.01 or 1%"
+            f"noise is {value!r}, not a share from 0 to 1; give the standard deviation as a "
+            "number, such as 0.01 for 1 %"
         )
     return float(number)
 

@@ -11,6 +11,7 @@ from typing import Any
 from quietarm.metaheuristics.methods.preset import Preset
 from quietarm.metaheuristics.methods.search_method import SearchMethod
 from quietarm.metaheuristics.methods.settings import Value
+from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp.checks import known, unknown
 
 PAPER_BOX: dict[str, float] = {"single-link": 0.2, "arm-on-flexible-link": 0.5}
@@ -21,6 +22,16 @@ _UNSET = "unset"
 
 def preset_of(name: str) -> Preset:
     """A method by its name; ValueError suggests the nearest one."""
+    named = NamedMethod.read(name)
+    if named.by_gradient:
+        raise ValueError(
+            f"{name} is no search: it takes the gradient of a plant's model; give a search, such "
+            f"as 'nsga2', or find the front of a move by epsilon_front or weighted_front"
+        )
+    if named.polish and named.method in PRESETS:
+        raise ValueError(
+            f"{name} is the name of a job; give {named.method!r}, and its front to polish_front"
+        )
     if name not in PRESETS:
         raise ValueError(unknown("method", name, PRESETS))
     return PRESETS[name]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.evaluation.population import replace_failures
+from quietarm.metaheuristics.evaluation.population import UNUSABLE, replace_failures
 from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
 from quietarm.ocp import Front
 from quietarm.ocp.checks import clipped, numbers, quoted, table_of, whole, words_of_error
@@ -29,7 +29,7 @@ from quietarm.ocp.record import Record
 
 Array = NDArray[np.float64]
 Function = Callable[..., Any]
-_ALL_FAILED = 20
+ALL_FAILED = 20
 """A function that gives no finite number for so many first candidates is refused."""
 
 
@@ -64,7 +64,7 @@ class GivenFunction(ProblemFunction):
         Whether it takes many candidates at once. Where this is not said, the function is called
         with one candidate first; an array of candidates follows where it returns rows, or where it
         fails as functions of arrays do, with an IndexError, a TypeError or a ValueError. So no
-        candidate that was evaluated is evaluated again.
+        candidate that was evaluated is evaluated again; a first call that fails is no evaluation.
     threads : int
         Calls at the same time: of blocks of candidates, or of candidates.
     name : str, optional
@@ -94,6 +94,7 @@ class GivenFunction(ProblemFunction):
         vectorized: bool | None = None,
         threads: int = 1,
         name: str = "",
+        may_fail: bool = False,
     ) -> None:
         def stated(name: str, given: Any, otherwise: Any = None) -> Any:
             own = getattr(function, name, None) if given is None else given
@@ -121,7 +122,7 @@ class GivenFunction(ProblemFunction):
         self.threads = whole("threads", threads, 1, 1_000)
         self._function = function
         self._vectorized = _said(stated("vectorized", vectorized))
-        self._first_failures = FirstFailures()
+        self._first_failures = None if may_fail else FirstFailures()
 
     @property
     def of_model(self) -> bool:
@@ -135,13 +136,17 @@ class GivenFunction(ProblemFunction):
         A candidate whose values are not finite has 1e30 everywhere, so that it comes last.
         """
         table = table_of(candidates, len(self.variables))
-        values = np.empty((0, len(self.objectives) + len(self.constraints)))
-        if len(table):
-            values = self._values(table)
-        failed = replace_failures(values)
-        self._first_failures.note(self._name, failed)
+        values = np.empty((len(table), len(self.objectives) + len(self.constraints)))
+        self.fill(table, values)
         count = len(self.objectives)
         return values[:, :count].copy(), values[:, count:].copy()
+
+    def fill(self, candidates: Array, values: Array) -> None:
+        """Write the values of candidates into a table, each row or block as it is evaluated."""
+        if len(candidates):
+            self._fill(candidates, values)
+        if self._first_failures is not None:
+            self._first_failures.note(self._name, values[:, 0] >= UNUSABLE)
 
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None
@@ -168,21 +173,25 @@ class GivenFunction(ProblemFunction):
         of_function: Any = points
         return FunctionFront(points=of_function, record=record, function=self.searched, **entries)
 
-    def _values(self, table: Array) -> Array:
-        """Objectives and violations of some candidates, as rows."""
+    def _fill(self, table: Array, values: Array) -> None:
         if self._vectorized is None:
-            first = self._first(table[:1])
-            return np.vstack([first, self._values(table[1:])]) if len(table) > 1 else first
-        if not self._vectorized:
-            return np.vstack(self._side_by_side(self._one, list(table)))
-        blocks = np.array_split(table, min(self.threads, len(table)))
-        return np.vstack(self._side_by_side(self._many, blocks))
+            _write(self._first(table[:1]), values[:1])
+            table, values = table[1:], values[1:]
+        count = len(table) if not self._vectorized else min(self.threads, len(table))
+        if not count:
+            return
 
-    def _side_by_side(self, call: Callable[[Array], Array], parts: Sequence[Array]) -> list[Array]:
-        if self.threads == 1 or len(parts) == 1:
-            return [call(part) for part in parts]
+        def evaluate(part: Array, rows: Array) -> None:
+            _write(self._many(part) if self._vectorized else self._one(part[0]), rows)
+
+        parts = np.array_split(table, count), np.array_split(values, count)
+        if self.threads == 1 or count == 1:
+            for part, rows in zip(*parts):
+                evaluate(part, rows)
+            return
         with ThreadPoolExecutor(self.threads) as pool:
-            return list(pool.map(call, parts))
+            for _ in pool.map(evaluate, *parts):
+                pass
 
     def _first(self, row: Array) -> Array:
         """Values of the first candidate; from now on it is known how the function is called."""
@@ -194,7 +203,12 @@ class GivenFunction(ProblemFunction):
             return self._as_array(row, alone)
         of_many = _dimensions(result[0]) == 2  # it makes rows, of numbers or of the candidate
         if of_many and len(result[0]) != 1:
-            return self._as_array(row)
+            try:
+                return self._as_array(row)
+            except ValueError as error:
+                if is_pair(result[0], 0) and not self.constraints:
+                    raise self._no_names(result[0]) from error
+                raise
         self._vectorized = of_many
         return self._rows_of(*result, 1) if of_many else self._row_of(*result)
 
@@ -208,7 +222,8 @@ class GivenFunction(ProblemFunction):
             if str(alone) == str(as_array):
                 raise alone from None
             raise ValueError(
-                f"{alone} (called with one candidate; with an array of them: {as_array})"
+                f"{alone} (called with one candidate; with an array of them: {as_array}); "
+                "vectorized=True or False says which of them it takes"
             ) from None
         self._vectorized = True
         return values
@@ -255,13 +270,30 @@ class GivenFunction(ProblemFunction):
         if self.constraints:
             raise ValueError(
                 f"{self._name} returns {_kind(result)}; with constraints give two: (objectives, "
-                "violations)"
+                "violations), such as (1.0, 2.0), [-0.1]"
             )
+        of_rows = 2 if self._vectorized is None else 0  # it may make rows of a candidate's numbers
+        if is_pair(result, len(argument) if argument.ndim == 2 else of_rows):
+            raise self._no_names(result)
         return result, None
+
+    def _no_names(self, result: Any) -> ValueError:
+        """Error to raise where a function returns violations whose names are not given."""
+        shape = _shape(result[1]) or (1,)
+        of_many = _dimensions(result[0]) == 2
+        count = shape[-1] if len(shape) == 1 + of_many else 1
+        names = ["touch"] if count == 1 else [f"limit_{i + 1}" for i in range(min(count, 9))]
+        return ValueError(
+            f"{self._name} returns two, objectives and violations, and no constraints are named; "
+            f"name the violations, such as constraints={names}, or set this as its attribute "
+            "`constraints`"
+        )
 
     def _is_pair(self, result: tuple[Any, Any]) -> bool:
         """Return whether a tuple of two is objectives with violations, not two objectives."""
-        second = result[1]
+        first, second = result
+        if self.constraints and np.ndim(first) == 0 and not _is_nan(first):
+            return False  # two numbers: objectives alone
         empty = getattr(second, "size", None) == 0 or (
             isinstance(second, list | tuple) and not second
         )
@@ -307,7 +339,7 @@ class FirstFailures:
             self._count = None
             return
         self._count += len(failed)
-        if self._count >= _ALL_FAILED:
+        if self._count >= ALL_FAILED:
             raise ValueError(
                 f"{name} gives no finite numbers (nan or infinite) for the first {self._count} "
                 "candidates; mend it, or give other bounds"
@@ -327,6 +359,34 @@ def failure_of(name: str, function: Function, error: Exception) -> FunctionFaile
         f"{name}{place} fails: {words_of_error(error)}; mend it, or return nan for a candidate "
         "that cannot be evaluated"
     )
+
+
+def is_pair(result: Any, candidates: int) -> bool:
+    """Return whether what is returned can only be objectives with violations, as a tuple.
+
+    Of two candidates it may be a row of objectives for each; with 0 candidates nothing speaks
+    against a pair.
+    """
+    if not (isinstance(result, tuple) and len(result) == 2):
+        return False
+    shapes = [_shape(part) for part in result]
+    if shapes[0] == ():
+        return False
+    return candidates != 2 or shapes[0] != shapes[1] or len(shapes[0] or ()) == 2
+
+
+def _shape(value: Any) -> tuple[int, ...] | None:
+    """Return the shape of an array; None of rows of different lengths."""
+    try:
+        return np.shape(value)
+    except ValueError:
+        return None
+
+
+def _write(evaluated: Array, rows: Array) -> None:
+    """Write what was evaluated into its rows of a table; what failed is unusable there."""
+    replace_failures(evaluated)
+    rows[:] = evaluated
 
 
 def _dimensions(value: Any) -> int:
@@ -374,4 +434,8 @@ def _corner(reference: Any, objectives: Sequence[str]) -> tuple[float, ...] | No
 
 def _kind(result: Any) -> str:
     """Say in a word or two what was returned."""
-    return "nothing" if result is None else f"one {type(result).__name__}"
+    if result is None:
+        return "nothing"
+    shape = _shape(result)
+    size = f" of {shape[0]}" if shape else ""
+    return f"one {type(result).__name__}{size}"

@@ -76,6 +76,14 @@ class ProblemFunction(ABC):
         constraints): positive where a constraint is broken.
         """
 
+    def fill(self, candidates: Array, values: Array) -> None:
+        """Write objectives and violations side by side into a table, a row for each candidate.
+
+        A function that evaluates one candidate after another writes each row as soon as it has it,
+        so that what is stopped in between leaves those before.
+        """
+        values[:] = np.hstack(self(candidates))
+
     @abstractmethod
     def points_of(
         self, coefficients: Array, values: Array, bound: float | None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Record, Setting
 
 Array = NDArray[np.float64]
+Places = NDArray[np.int64]
 _OF_PROBLEM = (
     "task", "profile", "bound", "lower", "upper", "variables", "objectives", "units", "constraints",
     "reference",
@@ -67,6 +68,8 @@ class RecordedFunction(ProblemFunction):
     ----------
     failed, infeasible : int
         Candidates so far whose values were not finite, and that violated a limit.
+    after_call : callable, optional
+        Called each time that candidates were evaluated and kept.
     """
 
     @takes(profile=JointProfile)
@@ -106,6 +109,7 @@ class RecordedFunction(ProblemFunction):
         self.archive = Archive(problem_function, self.noise > 0)
         self.failed = 0
         self.infeasible = 0
+        self.after_call: Callable[[], None] | None = None
         self._idle = 0
         # the box that is searched is not a method's to change
         self.lower.flags.writeable = False
@@ -140,24 +144,49 @@ class RecordedFunction(ProblemFunction):
             raise BudgetSpentError
 
     def _record(self, table: Array) -> tuple[Array, Array]:
-        """Evaluate the candidates that are afforded, and keep them."""
+        """Evaluate the candidates that are afforded, and keep them.
+
+        Those that were evaluated are kept as well where the function fails or is stopped between
+        them, before that goes on.
+        """
         remaining = self.budget - self.archive.evaluations
         count = int(min(remaining, len(table)))
         afforded = np.clip(table[:count], self.lower, self.upper)
-        true, violations = self.asked(afforded)
+        places, values, stopped = self._ask(afforded)
+        candidates = afforded[places]
+        true, violations = np.hsplit(values, [len(self.objectives)])
         failed = np.asarray((true >= UNUSABLE).any(axis=1))
         broken = (violations > 0).any(axis=1)
         self.failed += int(failed.sum())
         self.infeasible += int((broken & ~failed).sum())
         objectives = self._noise.of(true, failed)
-        if len(afforded):
+        if len(candidates):
             usable = np.logical_not(failed | broken)
-            repeated = self._evaluate_again(afforded, objectives, true, usable, remaining - count)
+            repeated = 0
+            if stopped is None:
+                repeated, stopped = self._evaluate_again(
+                    candidates, objectives, true, usable, remaining - count
+                )
             without_noise = true if self.noise else None
-            self.archive.add(afforded, objectives, usable, without_noise, repeated)
+            self.archive.add(candidates, objectives, usable, without_noise, repeated)
+        if stopped is not None:
+            raise stopped
+        if self.after_call is not None:
+            self.after_call()
         if len(afforded) < len(table):
             raise BudgetSpentError
         return objectives, violations
+
+    def _ask(self, candidates: Array) -> tuple[Places, Array, BaseException | None]:
+        """Which candidates were evaluated, their values, and what stopped the others if it did."""
+        values = np.full((len(candidates), len(self.objectives) + len(self.constraints)), np.nan)
+        places = np.arange(len(candidates))
+        try:
+            self.asked.fill(candidates, values)
+        except BaseException as error:  # of any kind, such as Ctrl-C
+            places = np.flatnonzero(~np.isnan(values).any(axis=1))
+            return places, values[places], error
+        return places, values, None
 
     def _evaluate_again(
         self,
@@ -166,27 +195,33 @@ class RecordedFunction(ProblemFunction):
         true: Array,
         usable: NDArray[np.bool_],
         remaining: float,
-    ) -> int:
+    ) -> tuple[int, BaseException | None]:
         """Put means in the place of the objectives of rows that would enter the archive.
 
-        Gives how many evaluations that took, of so many that remain.
+        Gives how many evaluations that took, of so many that remain, and what stopped it if
+        something did.
         """
         if self.reevaluate == 1:
-            return 0
+            return 0, None
         rows = self.archive.entering(objectives, usable)
         totals = objectives[rows]
         times = np.ones(len(rows))
         repeated = 0
+        stopped = None
         for _ in range(self.reevaluate - 1):
             count = int(min(len(rows), remaining - repeated))
+            places = np.arange(count)
             again = true[rows[:count]]
             if not self.of_model and count:
-                again = self.asked(candidates[rows[:count]])[0]
-            totals[:count] += self._noise.of(again, np.zeros(count, dtype=bool))
-            times[:count] += 1
-            repeated += count
+                places, values, stopped = self._ask(candidates[rows[:count]])
+                again = values[:, : len(self.objectives)]
+            totals[places] += self._noise.of(again, np.zeros(len(places), dtype=bool))
+            times[places] += 1
+            repeated += len(places)
+            if stopped is not None:
+                break
         objectives[rows] = totals / times[:, None]
-        return repeated
+        return repeated, stopped
 
     def charge(self, evaluations: int) -> None:
         """Count candidates that were simulated for derivatives; BudgetSpentError at the end."""

@@ -197,7 +197,7 @@ def _figures(progress: SearchProgress, least: str) -> str:
     best = "nothing found yet" if isnan(progress.residual) else best
     broken = f" ({share:.0%} break a limit)" if progress.infeasible else ""
     return (
-        f"generation {done}/{total}, {best}, hypervolume {progress.hypervolume:.4f}, "
+        f"{progress.step} {done}/{total}, {best}, hypervolume {progress.hypervolume:.4f}, "
         f"{_speed(progress):.0f} candidates/s{broken}, {seconds_left:.0f} s left"
     )
 

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import quietarm as qa
+from quietarm.metaheuristics import told_search
+from quietarm.ocp.json_text import texts_of
 
 SCRIPT = """
 import os, signal, sys
@@ -36,10 +38,9 @@ def measure(x):
     return [x[0] ** 2 + x[1] ** 2, (x[0] - 2) ** 2 + x[1] ** 2], [x[0] - 1]
 
 
-def search_of(method="es", **more):
-    return qa.Search(
-        [-5, -5], 5, evaluations=45, algorithm=method, constraints=["wall"], seed=3, **more
-    )
+def search_of(method="es", evaluations=45, **more):
+    options = {"constraints": ["wall"], "seed": 3, "upper": 5} | more
+    return qa.Search([-5, -5], evaluations=evaluations, algorithm=method, **options)
 
 
 def run(search):
@@ -87,6 +88,22 @@ def test_it_goes_on_in_the_middle_of_a_generation_and_asks_what_a_search_asks(me
     assert dataclasses.replace(direct, function=whole.function) == whole
 
 
+def test_a_told_candidate_is_encoded_once_however_often_the_state_is_written(tmp_path, monkeypatch):
+    encoded = []
+
+    def counted(document, **more):
+        encoded.append(document["number"])
+        return texts_of(document, **more)
+
+    monkeypatch.setattr(told_search, "texts_of", counted)
+    state = tmp_path / "run.json"
+    run(search_of(state=state))
+    assert encoded == list(range(1, 46))
+    loaded = told_search.SearchState.load(state)  # which checks the checksum
+    loaded.save(tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_text() == state.read_text()
+
+
 def test_several_candidates_may_be_measured_side_by_side_in_any_order():
     together = search_of("nsga2")
     while len(rows := together.ask(4)):
@@ -108,6 +125,23 @@ def test_a_candidate_is_asked_for_until_it_is_told_and_failures_are_counted():
     assert search.front().failed == 1
 
 
+@pytest.mark.parametrize("method", ["es", "nsga2"])
+def test_a_machine_that_fails_at_first_is_mended_and_the_search_goes_on(method, tmp_path):
+    state = tmp_path / "run.json"
+    failing = search_of(method, state=state)
+    for _ in range(19):
+        failing.tell(failing.ask(), np.nan)
+    with pytest.warns(UserWarning, match=r"all 20 candidates .* have failed; .*run.json keeps"):
+        failing.tell(failing.ask(), np.nan)
+    failing.tell(failing.ask(), np.nan)  # said once
+    failing.close()
+    mended = search_of(method, state=state)
+    assert mended.evaluations == 21
+    front = run(mended)
+    assert front.failed == 21
+    assert front.points
+
+
 def test_a_closed_search_is_asked_and_told_nothing():
     closed = search_of()
     first, *others = closed.ask(9)
@@ -123,6 +157,9 @@ def test_violations_where_there_are_no_constraints_are_refused():
     free = qa.Search([-5, -5], 5, evaluations=10, algorithm="es")
     with pytest.raises(ValueError, match="the search has no violations; leave them out"):
         free.tell(free.ask(), [1.0, 2.0], [0.5])
+    with pytest.raises(ValueError, match=r"name the violations .* by constraints=\[...\]"):
+        free.tell(free.ask(), ([1.0, 2.0], [0.5]))
+    free.tell(free.ask(2), ((1.0, 2.0), (3.0, 4.0)))  # a row for each is no pair
 
 
 @pytest.mark.parametrize(
@@ -132,6 +169,7 @@ def test_violations_where_there_are_no_constraints_are_refused():
         ((None, [1.0], [0.0]), "objectives have shape"),
         ((None, [1.0, 2.0], None), "violations are missing"),
         ((None, ["one", 2.0], [0.0]), "objectives are"),
+        ((None, ([1.0, 2.0], [0.0]), None), r"such as tell\(candidate, \*measure\(candidate\)\)"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_in_one_line(told, words):
@@ -144,11 +182,48 @@ def test_what_cannot_be_meant_is_refused_in_one_line(told, words):
     search.tell(search.ask(), *measure(search.ask()))  # and it goes on
 
 
+@pytest.mark.parametrize("method", ["es", "nsga2"])
+def test_a_finished_search_goes_on_with_more_evaluations(method, tmp_path):
+    state = tmp_path / "run.json"
+    run(search_of(method, 25, state=state))  # the last generation of nsga2 is cut short
+    extended = search_of(method, 45, state=state)
+    assert extended.evaluations == 25
+    assert run(extended) == run(search_of(method))
+    with pytest.raises(ValueError, match="is of 45 evaluations, not 25; give 45 or more"):
+        search_of(method, 25, state=state)
+
+
+def test_a_search_that_depends_on_its_budget_is_not_extended(tmp_path):
+    state = tmp_path / "run.json"
+    run(search_of("nsga2", 20, state=state))
+    before = state.read_text()
+    # of 1,000 candidates the population is 20, of 20 it is 10
+    with pytest.raises(ValueError, match=r"with 1000 nsga2 asks for another candidate 11; give 20"):
+        search_of("nsga2", 1000, state=state)
+    assert state.read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ({"upper": 6}, r"its upper is \[5.0, 5.0\], not \[6.0, 6.0\];"),
+        ({"units": ["mm", "J"]}, r"its units are \['m', 'J'\], not \['mm', 'J'\];"),
+        ({"seed": 4, "settings": {"first": 7}}, r"seed is 3, not 4, its settings are not given, "),
+    ],
+)
+def test_what_differs_from_a_state_is_named_with_both_values(other, words, tmp_path):
+    state = tmp_path / "run.json"
+    begun = search_of(state=state)
+    begun.tell(begun.ask(), *measure(begun.ask()))
+    with pytest.raises(ValueError, match=words):
+        search_of(state=state, **other)
+
+
 def test_a_state_of_another_search_is_refused(tmp_path):
     state = tmp_path / "run.json"
     begun = search_of(state=state)
     begun.tell(begun.ask(), *measure(begun.ask()))
-    with pytest.raises(ValueError, match="its method differs"):
+    with pytest.raises(ValueError, match="its method is 'es', not 'nsga2'"):
         search_of("nsga2", state=state)
     begun.tell(begun.ask(), *measure(begun.ask()))
     state.write_text("{}")

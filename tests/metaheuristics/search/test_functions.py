@@ -219,6 +219,68 @@ def test_threads_call_a_function_of_one_candidate_at_the_same_time():
     assert front.coefficients.tolist() == alone.coefficients.tolist()
 
 
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("method", ["gp", "es", "nsga2"])
+@pytest.mark.parametrize("stop", [KeyboardInterrupt, RuntimeError])
+def test_what_was_evaluated_before_a_stop_is_in_the_front_of_the_run(method, threads, stop):
+    calls = []
+
+    def stops(x):
+        calls.append(x.tolist())
+        if len(calls) == 8:
+            raise stop
+        return parabolas(x)
+
+    begun = []
+    with pytest.raises((KeyboardInterrupt, ValueError)):
+        qa.search(
+            stops, **BOX, evaluations=240, algorithm=method, threads=threads, vectorized=False,
+            reevaluate=3, begun=begun.append,
+        )  # fmt: skip
+    front = begun[0].front()
+    assert front.record.evaluations == len(calls) - 1
+    evaluated = calls[:7] + calls[8:]  # others may have gone on beside the one that stopped
+    assert front.points
+    assert all(list(point.coefficients) in evaluated for point in front.points)
+
+
+@pytest.mark.usefixtures("what_is_made_up_is_forgotten")
+@pytest.mark.parametrize(
+    ("method", "budget", "steps"),
+    [
+        # the first 2 n + 4 of gp, and the first five of es, are one call
+        ("gp", 12, [8, 9, 10, 11, 12]),
+        ("es", 8, [5, 6, 7, 8]),
+        ("slsqp", 2, [1, 2]),
+        ("own", 3, [1, 2, 3]),
+        ("nsga2", 25, [1, 2, 3]),  # the last generation is cut short
+    ],
+)
+def test_progress_is_reported_by_methods_with_generations_and_without(method, budget, steps):
+    class Own(qa.SearchMethod):
+        name = "own"
+
+        def run(self, function, seed, budget):
+            while True:
+                function([[0.5, 0.5]])
+
+    seen = []
+    qa.search(parabolas, **BOX, evaluations=budget, algorithm=method, report=seen.append)
+    assert [progress.generation for progress in seen] == steps
+    assert seen[-1].generation == seen[-1].generations
+    assert seen[-1].evaluations == budget
+    assert {progress.step for progress in seen} == {
+        "generation" if method == "nsga2" else "candidate"
+    }
+
+
+def test_progress_is_not_reported_more_often_than_is_read():
+    seen = []
+    qa.search(parabolas, **BOX, evaluations=400, algorithm="es", report=seen.append)
+    assert 190 < len(seen) < 300
+    assert seen[-1].evaluations == 400
+
+
 @pytest.mark.slow
 def test_jobs_of_a_function_are_files_that_a_second_run_finds(tmp_path):
     reference = qa.search(parabolas, **BOX, evaluations=600, algorithm="es")
@@ -245,8 +307,17 @@ def broken(x):
         (parabolas, {"bound": 0.2}, "bound is for a task"),
         (parabolas, {"objectives": ["one"]}, "give two or more"),
         (parabolas, {"units": ["m"]}, "2 objectives have 1 units"),
-        (parabolas, {"constraints": ["wall"]}, "with constraints give two"),
+        (parabolas, {"constraints": ["wall"]}, "one list of 2; with constraints give two"),
+        (lambda x: (*parabolas(x),), {"constraints": ["wall"]}, "one tuple of 2; with const"),
+        (limited, {}, r"no constraints are named; .* constraints=\['touch'\]"),
+        (lambda x: (parabolas(x), x[0]), {}, "no constraints are named"),
+        (lambda x: (parabolas(x), [x[0], x[1]]), {}, "no constraints are named"),
+        (lambda x: (many(x), x), {"vectorized": True}, r"constraints=\['limit_1', 'limit_2'\]"),
         (parabolas, {"algorithm": "memetic"}, "a function has none"),
+        (limited, {"algorithm": "moead", "constraints": ["wall"]}, "a function with constraints"),
+        (parabolas, {"algorithm": "epsilon"}, "takes the gradient of a plant's model"),
+        (parabolas, {"algorithm": "nsga2+polish"}, "give 'nsga2', and its front to polish_front"),
+        (parabolas, {"noise": "5%"}, "as a number, such as 0.01 for 1 %"),
         (lambda x: [1.0, 2.0, 3.0], {}, r"objectives of shape \(3,\), not \(2,\)"),
         (lambda x: [1.0, [2.0, 3.0]], {}, r"objectives are \[1.0, \[2.0, 3.0\]\]; give numbers"),
         (parabolas, {"constraints": "wall"}, r"names, such as \['touch'\]"),

@@ -113,7 +113,7 @@ def test_what_slsqp_cannot_have_is_refused():
     with pytest.raises(ValueError, match="slsqp has no population; leave it out"):
         search(task, PROBLEM.profile, algorithm="slsqp", bound=0.2, population=20)
     start = found("random", evaluations=50)
-    with pytest.raises(ValueError, match="slsqp begins where its seed says"):
+    with pytest.raises(ValueError, match="slsqp cannot start from a front; leave start"):
         search(task, PROBLEM.profile, algorithm="slsqp", bound=0.2, start=start)
 
 

@@ -50,9 +50,10 @@ def test_a_line_of_a_search_fits_into_a_hundred_columns():
         display(
             SearchProgress(
                 100_000, 100_000, 12.345, 0.0447, 0.653, 5_000_000, 3600.0, infeasible=1_000_000,
-                names=("settling time of the tip", "work of the drive"),
+                names=("settling time of the tip", "work of the drive"), step="candidate",
             )
         )  # fmt: skip
     lines = pipe.file.getvalue().splitlines()
     assert max(map(len, lines)) <= 100
+    assert lines[0].startswith("candidate 100000/100000, ")
     assert "hypervolume 0.6530" in " ".join(lines)
