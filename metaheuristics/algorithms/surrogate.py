@@ -39,7 +39,7 @@ from quietarm.metaheuristics.evaluation.population import UNUSABLE
 Rows = NDArray[np.intp]
 Array = NDArray[np.float64]
 ALONE = 250
-"""Largest budget with which a model chooses one candidate, anywhere in the box.
+"""Largest budget with which a model chooses one candidate, anywhere within the bounds.
 
 With a larger one it chooses several, and none beside a candidate that it does not know.
 """

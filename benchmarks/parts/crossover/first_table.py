@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from .plan import AGAIN
 from .words import bold, p_value, short_label, two_digits, without_noise
 
 LEVEL = 0.05
@@ -20,10 +21,10 @@ TITLES = {
     "few-200-noise": "200 candidates, 1 % of noise",
     "few-1000": "1,000 candidates, no limits",
     "few-1000-noise": "1,000 candidates, 1 % of noise",
-    "three": "a model, three objectives",
-    "four": "a model, four objectives",
+    "three": "a model, three objectives†",
+    "four": "a model, four objectives†",
 }
-"""Rows as the report names them."""
+"""Rows as the report names them; † has gaps of points alone."""
 INDICATORS = {
     "points": "hypervolume of 50 points",
     "between": "hypervolume with interpolated motions",
@@ -77,7 +78,7 @@ def by_test(row: Row, comparison: Row, indicator: str = "") -> Row:
 def verdict_of(row: Row, indicator: str = "") -> tuple[str, bool]:
     """Return who is better, 'search' or 'rival', and whether that is sure.
 
-    Sure is a winner with a significant difference on at least half of the kinds of problem, where
+    Sure is a winner with a significant difference on more than half of the kinds of problem, where
     the other has none. Without any, the one with the smaller gap on most kinds is named.
     """
     tests = [by_test(row, one, indicator) for one in row["comparisons"]]
@@ -87,7 +88,7 @@ def verdict_of(row: Row, indicator: str = "") -> tuple[str, bool]:
     if wins == losses:
         smaller = sum(test["difference"] < 0 for test in tests)
         return "search" if 2 * smaller > len(tests) else "rival", False
-    is_sure = min(wins, losses) == 0 and 2 * max(wins, losses) >= len(tests)
+    is_sure = min(wins, losses) == 0 and 2 * max(wins, losses) > len(tests)
     return "search" if wins > losses else "rival", is_sure
 
 
@@ -96,7 +97,7 @@ def take_words(row: Row, winner: str, is_sure: bool) -> str:
     rival = "the gradient" if row["rival"] == "epsilon" else "`slsqp`"
     taken = f"`{row['search'].partition(' ')[0]}`" if winner == "search" else rival
     if winner == "search" and "reevaluate" in row["search"]:
-        taken += ", five evaluations of each candidate"
+        taken = f"`{row['search'].partition(' ')[0]} --reevaluate {AGAIN}`"
     if is_sure:
         return taken
     if any(is_clear(by_test(row, one)) for one in row["comparisons"]):

@@ -52,7 +52,7 @@ LOOK_OF: Mapping[str, Look] = {
             grammar.variants("plan", 3),
         )
     ),
-    **dict(zip(("MOEA/D-DE", "MOEA/D-DE, five evaluations"), grammar.variants("search", 2))),
+    **dict(zip(("MOEA/D-DE", "MOEA/D-DE, up to five evaluations"), grammar.variants("search", 2))),
     **dict(zip(("memetic MOEA/D-DE", "SLSQP", "MO-CMA-ES", "NSGA-II", "GDE3"), FURTHER)),
 }
 """Of the methods that several pictures have."""

@@ -16,7 +16,7 @@ LABELS = {
     "multistart starts=100": "multistart",
     "nsga2+polish": "NSGA-II, polished",
     "gde3+polish": "GDE3, polished",
-    "moead-de reevaluate=5": "MOEA/D-DE, five evaluations",
+    "moead-de reevaluate=5": "MOEA/D-DE, up to five evaluations",
     "slsqp": "SLSQP",
     "slsqp continuation=False": "SLSQP, random starts",
     "slsqp in-turn=True": "SLSQP, every integer in turn",

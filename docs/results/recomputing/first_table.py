@@ -179,6 +179,7 @@ def judged_on(
         "gradient": float(np.median(gaps_of_gradient)),
         "equal": int((np.abs(difference) < EQUAL).sum()),
         "interval": interval(difference, plants),
+        "without_motion": {"search": without_motion(ours), "rival": without_motion(theirs)},
         "plants": len(by_plant),
         "plants_better": int(sum(value < 0 for value in by_plant)),
         "by": {
@@ -186,6 +187,12 @@ def judged_on(
             for indicator in indicators
         },
     }
+
+
+def without_motion(of_problems: Mapping[str, Sequence[Run]]) -> float:
+    """Share of runs that have no motion within 1 mm."""
+    runs = [run for of_problem in of_problems.values() for run in of_problem]
+    return sum(not np.isfinite(run.energy) for run in runs) / len(runs)
 
 
 def by_one_indicator(
