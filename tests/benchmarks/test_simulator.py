@@ -91,11 +91,12 @@ def test_runs_of_drawn_arms_are_packed_and_not_run_again(tmp_path, monkeypatch):
     monkeypatch.setattr(simulator, "drawn", lambda: ARMS[2:])
     monkeypatch.setattr(simulator, "BUDGET", 20)
     monkeypatch.setattr(simulator, "LONG", 20)
+    monkeypatch.setattr(simulator, "LONGEST", 30)
     monkeypatch.setattr(simulator, "outside", lambda: ())
     for _ in range(2):
         simulator.PLANS["drawn"](1, (), tmp_path)
         runs = read(tmp_path / "arms.csv.xz")
         assert [(run.method, run.candidates, run.seed) for run in runs] == [
-            ("moead-de", 20, 100), ("random", 20, 0),
+            ("moead-de", 20, 100), ("moead-de", 30, 100), ("random", 20, 0),
         ]  # fmt: skip
         assert all(len(run.points) for run in runs)
