@@ -285,8 +285,8 @@ class GivenFunction(ProblemFunction):
         names = ["touch"] if count == 1 else [f"limit_{i + 1}" for i in range(min(count, 9))]
         return ValueError(
             f"{self._name} returns two, objectives and violations, and no constraints are named; "
-            f"name the violations, such as constraints={names}, or set this as its attribute "
-            "`constraints`"
+            f"name the violations, such as constraints={names} (--constraints), or set its "
+            "attribute `constraints`"
         )
 
     def _is_pair(self, result: tuple[Any, Any]) -> bool:
