@@ -49,7 +49,7 @@ LEAST, MOST = 2e-3, 0.2
 
 @dataclass(frozen=True)
 class Machine:
-    """What the model leaves open; the defaults are those of the first three problems.
+    """Numbers that the model leaves open; the defaults are those of the first three problems.
 
     Attributes
     ----------

@@ -58,8 +58,8 @@ class ProblemFunction(ABC):
     def kept_free(self) -> float:
         """Return by how much a method that ends on constraints keeps violations below zero.
 
-        It is 0 unless violations are shares of a limit: of a user's own, which have units of their
-        own, such a method keeps its own tolerance free.
+        It is 0 unless violations are shares of a limit. A user's own violations have units of their
+        own; there such a method keeps its tolerance free.
         """
         return 0.0
 

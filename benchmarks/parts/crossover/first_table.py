@@ -150,30 +150,23 @@ def indicator_words(row: Row, comparison: Row, indicator: str) -> str:
     return f"{test['better']} of {comparison['moves']}: {who}"
 
 
-def by_indicators(rows: Sequence[Row]) -> dict[str, Any]:
+def by_indicators(rows: Sequence[Row]) -> dict[str, int]:
     """Count what other indicators say of the table's comparisons.
 
-    Of those with a verdict: kept by all, lost by some, turned round by some. Of those without one:
-    how many have one by some other indicator, and how many of these are for the search. `energy`
-    is how many are for the search by the energy within 1 mm.
+    Of those with a verdict: how many lose it by some other indicator, and how many are turned round
+    by one.
     """
-    names = ("verdicts", "kept", "lost", "turned", "open", "gained", "search", "energy")
-    counts = dict.fromkeys(names, 0)
+    counts = {"verdicts": 0, "lost": 0, "turned": 0}
     for row in rows:
         for one in row["comparisons"]:
-            counts["energy"] += side_of(one["by"]["energy"]) == -1
             side = side_of(one["by"][row["measure"]])
+            if not side:
+                continue
             others = {side_of(by) for name, by in one["by"].items() if name != row["measure"]}
-            if side:
-                counts["verdicts"] += 1
-                turned = -side in others
-                counts["turned"] += turned
-                counts["kept"] += others == {side}
-                counts["lost"] += not turned and others != {side}
-            else:
-                counts["open"] += 1
-                counts["gained"] += others != {0}
-                counts["search"] += -1 in others and 1 not in others
+            turned = -side in others
+            counts["verdicts"] += 1
+            counts["turned"] += turned
+            counts["lost"] += not turned and others != {side}
     return counts
 
 
