@@ -48,7 +48,7 @@ class Deciding:
 DECIDING = {
     "centre": Deciding(("centre",), 10_000, ("moead-de", "slsqp")),
     "limits": Deciding(("limits",), 10_000, ("moead-de", "slsqp")),
-    "limits-1000": Deciding(("limits",), 1_000, ("es", "gp", "slsqp")),
+    "limits-1000": Deciding(("limits",), 1_000, ("gp", "slsqp")),
     "limits-200": Deciding(("limits",), 200, ("gp", "slsqp")),
     "jumps": Deciding(("energy",), 10_000, ("moead-de", "slsqp"), "motor-map"),
     "noise": Deciding(
@@ -58,17 +58,8 @@ DECIDING = {
     ),
     "few-200": Deciding(("few",), 200, ("gp", "slsqp")),
     "few-200-noise": Deciding(("few",), 200, ("gp noise=0.01", "slsqp step=0.01 noise=0.01")),
-    "few-1000": Deciding(
-        ("crossing", "few"),
-        1_000,
-        ("es", "gde3 population=20", "gp", "moead-de population=20", "slsqp"),
-    ),
-    "few-1000-noise": Deciding(
-        ("few",),
-        1_000,
-        ("gde3 population=20 noise=0.01", "gp noise=0.01", "moead-de population=20 noise=0.01",
-         "slsqp step=0.01 noise=0.01"),
-    ),
+    "few-1000": Deciding(("crossing", "few"), 1_000, ("gp", "slsqp")),
+    "few-1000-noise": Deciding(("few",), 1_000, ("gp noise=0.01", "slsqp step=0.01 noise=0.01")),
     "objectives": Deciding(("objectives",), 10_000, ("moead-de",)),
 }  # fmt: skip
 """By row; `python benchmarks/crossover.py FOLDER --deciding NAME ...` runs those that are named."""
