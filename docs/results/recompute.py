@@ -27,7 +27,7 @@ from recomputing.coefficients import energy_by_terms, gain_of_coefficients
 from recomputing.comparing import both_measures, gradient_labels, searches_in
 from recomputing.efforts import efforts
 from recomputing.features import prediction_figures
-from recomputing.first_table import judged_rows
+from recomputing.first_table import add_holm_of_table, judged_rows
 from recomputing.further_axes import energy_of_families, further_figures
 from recomputing.gaps import Results
 from recomputing.gradient_alone import beaten, repeats
@@ -60,6 +60,10 @@ def compute(folder: Path) -> dict[str, Any]:
         for pair in searches_in(results, ("paper",), budget, centre, 5)
     ]
     large = searches_in(results, ("large",), 100_000, centre, 3)
+    judged = judged_rows(results)
+    arms = arm_figures(folder)
+    basins = basins_figures(folder)
+    add_holm_of_table(judged, arms, basins)
     return {
         **efforts(results, folder),
         **map_figures(results, crossed),
@@ -80,15 +84,15 @@ def compute(folder: Path) -> dict[str, Any]:
         "further": further_figures(results),
         "families": energy_of_families(results),
         "parallel": parallel_figures(results, folder),
-        "judged": judged_rows(results),
+        "judged": judged,
         "indicators": by_indicator(results, crossed),
         "differences": against_differences(results, crossed),
         "gain": gain_of_coefficients(results, crossed),
         "attained": attained_figures(results, centre, methods),
         "profiles": runtime_profiles(results),
         "black_box": black_box_figures(folder),
-        "arms": arm_figures(folder),
-        "basins": basins_figures(folder),
+        "arms": arms,
+        "basins": basins,
         "prediction": prediction_figures(results, folder, crossed),
     }
 

@@ -41,7 +41,7 @@ from quietarm.views.pictures import grammar  # noqa: E402
 
 recompute = page.recompute_module(RESULTS)
 from recomputing.areas import area, best_known  # noqa: E402
-from recomputing.first_table import OF_LIMITS, judged_rows  # noqa: E402
+from recomputing.first_table import OF_LIMITS, add_holm_of_table, judged_rows  # noqa: E402
 from recomputing.further_axes import further_figures  # noqa: E402
 from recomputing.gaps import Results  # noqa: E402
 from recomputing.published import differences, other_lines, wrong_lines  # noqa: E402
@@ -174,6 +174,24 @@ def test_first_seeds_choose_and_fresh_ones_judge():
     assert judged["by"]["between"]["holm"] == pytest.approx(2 * least_p(10))
     line = first_table.line_of(row, "-")
     assert (line["take"], line["better"]) == ("`slsqp`", "10/10")
+
+
+def test_holm_is_over_all_rows_of_the_first_table():
+    """The arms in MuJoCo and several basins count among its comparisons."""
+    runs = [
+        *made_up_runs("centre", "epsilon", [0.0] * 5),
+        *made_up_runs("centre", "nsga2", [0.2] * 5),
+        *made_up_runs("centre", "slsqp", [0.3] * 5),
+    ]
+    rows = judged_rows(Results(runs))
+    arms = {"judged": {"p": least_p(10)}}
+    of_methods = {"p": 0.1, "holm": 0.6}
+    add_holm_of_table(rows, arms, {"posts": {"cells": [{"search_against_slsqp": of_methods}]}})
+    tests = [one["by"]["between"] for row in rows for one in row["comparisons"]]
+    # three of one sign on ten moves, and one that Holm has adjusted over methods before
+    holm_of_ten = pytest.approx(4 * least_p(10))
+    assert [test["holm"] for test in (*tests, arms["judged"])] == [holm_of_ten] * 3
+    assert of_methods == {"p": 0.1, "holm": 0.6, "holm_of_table": 0.6}
 
 
 def test_tuned_settings_are_run_under_the_label_by_which_the_figures_find_them():

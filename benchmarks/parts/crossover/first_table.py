@@ -139,6 +139,16 @@ def seeds_of(rows: Sequence[Row]) -> str:
     return f"{known[0]} to {known[-1]}" if known[0] < known[-1] else str(known[0])
 
 
+def least_p(rows: Sequence[Row], problems: int = 10) -> float:
+    """Return the least adjusted p of the comparisons on so many problems."""
+    return min(
+        by_test(row, one)["holm"]
+        for row in rows
+        for one in row["comparisons"]
+        if one["moves"] == problems
+    )
+
+
 def indicator_words(row: Row, comparison: Row, indicator: str) -> str:
     """Return on how many problems the search is better, and who is with a verdict."""
     if indicator not in comparison["by"]:

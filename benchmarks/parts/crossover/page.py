@@ -21,6 +21,7 @@ from .first_table import (
     first_table,
     indicator_words,
     kind_of,
+    least_p,
     seeds_of,
 )
 from .pictures import WAYS, write_pictures
@@ -121,6 +122,7 @@ def page_of(template: str, figures: Mapping[str, Any], results: Path) -> str:
         indicator_names=INDICATORS,
         row_titles=TITLES,
         fresh_seeds=seeds_of,
+        least_p=least_p,
         kind_of=kind_of,
         deciding=list(DECIDING),
         ladder=LADDER,

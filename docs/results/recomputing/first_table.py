@@ -12,7 +12,7 @@ from .comparing import medians_by_plant, searches_in
 from .experiment import CONTROL, DIFFERENCES, LIMITS, takes_slopes
 from .gaps import INDICATORS, Results
 from .runs import Problem, Run
-from .significance import add_holm, interval, signed_ranks
+from .significance import add_holm, holm, interval, signed_ranks
 
 FIRST_SEEDS = 3
 EQUAL = 0.5
@@ -55,21 +55,35 @@ ROWS = (
 
 
 def judged_rows(results: Results) -> list[dict[str, Any]]:
-    """The first table: every row's search, chosen on the first seeds and judged on fresh ones.
+    """Every row's search, chosen on the first seeds and judged on fresh ones.
 
-    Holm's p is over all comparisons of the table, each by the indicator of its row. By any other
-    indicator it is over all comparisons by that one.
+    Holm's p is over all comparisons by the same indicator.
     """
     rows = [judged(results, row) for row in ROWS]
-    comparisons = [(row, comparison) for row in rows for comparison in row["comparisons"]]
-    of_indicators = [
-        [comparison["by"][name] for _, comparison in comparisons if name in comparison["by"]]
-        for name in INDICATORS
-    ]
-    of_table = [comparison["by"][row["measure"]] for row, comparison in comparisons]
-    for tests in (*of_indicators, of_table):
-        add_holm(tests)
+    comparisons = [comparison for row in rows for comparison in row["comparisons"]]
+    for name in INDICATORS:
+        add_holm([one["by"][name] for one in comparisons if name in one["by"]])
     return rows
+
+
+def add_holm_of_table(
+    rows: Sequence[dict[str, Any]], arms: Mapping[str, Any], basins: Mapping[str, Any]
+) -> None:
+    """Add Holm's p over all comparisons of the table: its rows, the arms and several basins.
+
+    Each is by the indicator of its row. Several basins have no fresh seeds: their search is the
+    best of those that were run, and the p that counts here is Holm's over methods.
+    """
+    tests = [one["by"][row["measure"]] for row in rows for one in row["comparisons"]]
+    if arms.get("judged"):
+        tests.append(arms["judged"])
+    cells = basins.get("posts", {}).get("cells")
+    chosen = cells[-1]["search_against_slsqp"] if cells else {}
+    *adjusted, of_basins = holm([*(test["p"] for test in tests), chosen.get("holm", np.nan)])
+    for test, p in zip(tests, adjusted, strict=True):
+        test["holm"] = p
+    if chosen:
+        chosen["holm_of_table"] = of_basins
 
 
 def judged(results: Results, row: Row) -> dict[str, Any]:
