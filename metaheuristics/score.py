@@ -10,8 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
-from math import ceil, nan
+from math import nan
 from typing import Any, ClassVar
 
 import moocore
@@ -31,14 +30,13 @@ from quietarm.ocp.checks import (
     takes,
 )
 from quietarm.ocp.front.function_front import FunctionFront
+from quietarm.ocp.front.interpolated import coefficients_between
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 Array = NDArray[np.float64]
 CORNER = 1.1
 """Hypervolumes are measured from here, where 0 is the reference front's least and 1 its largest
 value of each objective: as is usual, a tenth beyond, so that the ends of the front count."""
-BETWEEN = 300
-"""About so many points a front has once motions between its own are added: as a reference front."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -350,31 +348,12 @@ def filled(front: Front) -> Array:
     points = objectives(front)
     if len(points) < 2 or isinstance(front, FunctionFront):  # what lies between would cost calls
         return points
-    coefficients = front.coefficients
-    pairs = np.array(_neighbours(points))
-    between = ceil(BETWEEN / len(pairs)) - 1
-    if between < 1:
+    inner = coefficients_between(front)
+    if not len(inner):
         return points
-    share = (np.arange(1, between + 1) / (between + 1))[:, None]
-    first, second = (coefficients[places][:, None] for places in pairs.T)
-    inner = (first * (1 - share) + second * share).reshape(-1, front.profile.size)
     table, violations = figures_of_motions(front, inner)
     usable = np.isfinite(table).all(axis=1) & (violations <= overrun).all(axis=1)
     return np.vstack([points, table[usable]])
-
-
-def _neighbours(points: Array) -> list[tuple[int, int]]:
-    """Pairs of points between which motions are looked at."""
-    if points.shape[1] == len(RESIDUAL_AND_ENERGY):
-        return list(pairwise(range(len(points))))
-    # as many as a point has beside it on a surface of that dimension
-    nearest = 2 * (points.shape[1] - 1)
-    extent = np.ptp(points, axis=0)
-    scaled = points / np.where(extent > 0, extent, 1.0)
-    distance = np.linalg.norm(scaled[:, None] - scaled, axis=2)
-    order = np.argsort(distance, axis=1)[:, 1 : nearest + 1]
-    pairs = {(min(i, j), max(i, j)) for i, row in enumerate(order.tolist()) for j in row}
-    return sorted(pairs)
 
 
 def whole_of(stations: Array) -> float:

@@ -27,6 +27,7 @@ from .front.epsilon import epsilon_front as epsilon_front
 from .front.front import Front as Front
 from .front.front import reference_corner as reference_corner
 from .front.function_front import FunctionFront as FunctionFront
+from .front.interpolated import interpolate_front as interpolate_front
 from .front.points import FailedPoint as FailedPoint
 from .front.points import FrontPoint as FrontPoint
 from .front.points import Mark as Mark

@@ -8,7 +8,6 @@ from functools import partial
 import pandas as pd
 
 from quietarm.metaheuristics.score import (
-    BETWEEN,
     GAP,
     HYPERVOLUME,
     Indicator,
@@ -18,6 +17,7 @@ from quietarm.metaheuristics.score import (
 from quietarm.metaheuristics.spread import Spread
 from quietarm.ocp import Front, task_difference
 from quietarm.ocp.figures import Figure, further_figures
+from quietarm.ocp.front.interpolated import BETWEEN
 from quietarm.ocp.limits import FRONT
 from quietarm.ocp.objectives import objectives_on
 from quietarm.studies.compare.compare_sentences import answer_of_fronts

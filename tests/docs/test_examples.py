@@ -222,7 +222,8 @@ SHORTER = {  # what is as long as the paper's, or thorough, is for the tests of 
 def shortened(words):
     """The words of a command, with fewer generations or points."""
     words = [word.replace(":90deg:", ":50deg:").replace(":1.4s:", ":1s:") for word in words]
-    fewer = [] if "--polish" in words else SHORTER.get(words[0], [])
+    of_file = {"--polish", "--interpolate"} & {*words}
+    fewer = [] if of_file else SHORTER.get(words[0], [])
     if words[-1].endswith(".gif"):
         fewer = ["--rate", "4", "--width", "240"]
     if "free" in words:

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 from quietarm.metaheuristics import PRESETS
-from quietarm.ocp import SolverFailedError, cross_check, epsilon_front, polish_front, weighted_front
+from quietarm.ocp import (
+    Front,
+    SolverFailedError,
+    cross_check,
+    epsilon_front,
+    interpolate_front,
+    polish_front,
+    weighted_front,
+)
 from quietarm.ocp.front.points import LEVELS
 from quietarm.ocp.front.time_front import TIME_AND_ENERGY, TimeFront, time_front
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY, refuse_more_objectives
@@ -41,8 +50,14 @@ from quietarm.studies.cli.quantities import parse_objectives_of_front, parse_wei
 from quietarm.studies.cli.types import INPUT, Parsed
 from quietarm.views import pictures
 from quietarm.views.report.acting_words import band_lines_of_front
-from quietarm.views.report.front_rows import failure_lines, gradient_lines, polish_lines
+from quietarm.views.report.front_rows import (
+    failure_lines,
+    gradient_lines,
+    polish_lines,
+    search_lines,
+)
 from quietarm.views.report.time_rows import time_front_lines
+from quietarm.views.report.words import counted
 
 _METHODS = {"epsilon": epsilon_front, "weighted": weighted_front}
 _DURATIONS = 9
@@ -77,6 +92,8 @@ _SEARCHES = {
            "plain cycloid, and say by how much the two differ."),
     option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
            "method: from each to less energy and no larger residual."),
+    option("--interpolate", type=INPUT, metavar="FILE", help="Add to this front, by any method, "
+           "about 300 motions between its points."),
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"},
                   formats=["front"]),
 )  # fmt: skip
@@ -94,9 +111,12 @@ def front(given: Given) -> None:
       quietarm front single-link --target pi/6 --band 1mm --objectives time,energy \\
           --torque-limit 0.15 --jerk-limit 500 --output time.json --output time.png
       quietarm front --polish nsga2.json --output polished.json --output polished.png
+      quietarm front --interpolate gp.json --output finer.json --output finer.csv
     """  # noqa: D301  # \b is click's: do not rewrap
     if given.polish is not None:
         return _polish(given)
+    if given.interpolate is not None:
+        return _interpolate(given)
     if given.objectives == TIME_AND_ENERGY:
         return _of_time(given)
     wanted = "points"
@@ -176,12 +196,7 @@ def _of_time(given: Given) -> None:
 
 
 def _polish(given: Given) -> None:
-    given.refuse_others(
-        {"polish", "output", *(param.name or "" for param in SOLVER)},
-        "is not for --polish, which keeps the task, profile and bound of its front",
-    )
-    with busy("checking"):
-        before = load_front(given.polish)
+    before = _front_to_change(given, "polish", [param.name or "" for param in SOLVER])
     with counting(len(before.points), "points") as report:
         polished = polish_front(before, solver=given.read_solver(), report=report)
     lines = polish_lines(before, polished.front, polished.gains)
@@ -189,3 +204,24 @@ def _polish(given: Given) -> None:
         given.output, lambda: pictures.polish_figure(before, polished), polished.front, [before]
     )
     finish(files, *lines)
+
+
+def _interpolate(given: Given) -> None:
+    before = _front_to_change(given, "interpolate")
+    with busy("evaluating motions between its points"):
+        finer = interpolate_front(before)
+    added = sum(point not in before.points for point in finer.points)
+    tried = finer.record.evaluations - before.record.evaluations
+    note = f"{added} of {counted(tried, 'motion')} between its points are on the front"
+    files = answer_files(given.output, lambda: pictures.front_figure([finer]), finer, [before])
+    finish(files, *search_lines([finer], [note]))
+
+
+def _front_to_change(given: Given, option: str, further: Sequence[str] = ()) -> Front:
+    """The front in the file of an option, which leaves no room for others but a few."""
+    given.refuse_others(
+        {option, "output", *further},
+        f"is not for --{option}, which keeps the task, profile and bound of its front",
+    )
+    with busy("checking"):
+        return load_front(getattr(given, option))

@@ -174,6 +174,7 @@ def test_what_needs_a_task_says_so_in_one_line(tmp_path):
         lambda: front.task.plant,
         lambda: front.judged(front.points[0]),
         lambda: qa.polish_front(front),
+        lambda: qa.ocp.interpolate_front(front),
         lambda: qa.evaluate_coefficients(front.task, front.points[0].coefficients),
         lambda: NamedProblem.of_front("mine", front).front().task.duration,
     ]

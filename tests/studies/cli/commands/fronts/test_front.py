@@ -20,7 +20,7 @@ from quietarm.ocp import (
     polish_front,
     weighted_front,
 )
-from quietarm.ocp.front.points import LEVELS
+from quietarm.ocp.front.points import LEVELS, non_dominated_rows
 from quietarm.views.report.captions import caption_of_front
 
 MOVE = "arm-on-flexible-link --target 90deg --duration 0.8 --terms 3"
@@ -96,6 +96,33 @@ def test_a_front_is_polished_shown_and_written(call, rough):
         rows = list(csv.DictReader(file))
     assert [float(row["energy_J"]) for row in rows] == [p.energy for p in expected.front.points]
     assert "<svg" in Path("p.svg").read_text()
+
+
+def test_motions_between_the_points_of_a_front_are_added_and_written(call, rough):
+    """They are of the front's task and box, none is dominated, and the record counts them."""
+    rough.restated(bound=0.5, evaluations=100).save("rough.json")
+    code, out, err = call("front --interpolate rough.json --output finer.json --output finer.svg")
+    assert code == 0, err
+    finer = Front.load("finer.json")
+    added = [point for point in finer.points if point not in rough.points]
+    assert len(added) > len(rough.points)
+    assert f"{len(added)} of 294 motions between its points are on the front" in out
+    assert finer.record.evaluations == 100 + 294
+    assert np.abs(finer.coefficients).max() <= 0.5
+    judged = finer.judged(added[len(added) // 2])
+    assert judged.energy == pytest.approx(added[len(added) // 2].energy, rel=1e-9)
+    for limit in np.linspace(*finer.residuals[[0, -1]], 20)[1:]:
+        assert finer.least_energy(limit) <= rough.least_energy(limit)
+    table = np.column_stack([finer.residuals, finer.energies])
+    assert len(non_dominated_rows(table)) == len(table)
+    assert "<svg" in Path("finer.svg").read_text()
+
+
+def test_what_a_front_is_interpolated_from_is_not_changed_by_options(refused, rough):
+    rough.save("rough.json")
+    line = "front --interpolate rough.json"
+    assert "--bound is not for --interpolate, which keeps the" in refused(f"{line} --bound 1")
+    assert "is not for --polish" in refused("front --polish rough.json --interpolate other.json")
 
 
 # A file states figures, which are computed again before they count
