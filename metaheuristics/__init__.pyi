@@ -23,11 +23,11 @@ from .problems.own_energy import OwnEnergyFunction as OwnEnergyFunction
 from .problems.problem_function import ProblemFunction as ProblemFunction
 from .problems.pymoo_problem import PymooProblem as PymooProblem
 from .problems.recorded import RecordedFunction as RecordedFunction
-from .run_search import SEARCH_RESIDUAL as SEARCH_RESIDUAL
-from .run_search import SearchProgress as SearchProgress
 from .run_search import search as search
 from .score import Indicator as Indicator
 from .score import Reference as Reference
+from .search_run import SearchProgress as SearchProgress
+from .spread import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .spread import Spread as Spread
 from .told_search import Search as Search
 from .told_search import SearchState as SearchState

@@ -32,7 +32,8 @@ from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.metaheuristics.parallel import MOST_WORKERS, LostWorkersError, side_by_side
 from quietarm.metaheuristics.problems.catalogue import NamedProblem, problem_of, why_no_problem
 from quietarm.metaheuristics.run_files import JOB, check_run, digest_of_job
-from quietarm.metaheuristics.run_search import MOST_EVALUATIONS, search
+from quietarm.metaheuristics.run_search import search
+from quietarm.metaheuristics.search_run import MOST_EVALUATIONS
 from quietarm.ocp import FileFormatError, Front, QuietarmError
 from quietarm.ocp.checks import whole, words_of_error
 from quietarm.ocp.objectives import refuse_more_objectives

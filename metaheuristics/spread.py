@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quietarm.metaheuristics.run_search import SEARCH_RESIDUAL
 from quietarm.ocp import Front
+
+SEARCH_RESIDUAL = 1e-3
+"""Residual [m] at which the energies of searches are compared."""
 
 
 @dataclass(frozen=True)

@@ -10,18 +10,20 @@ from __future__ import annotations
 import queue
 import threading
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
+from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.methods.search_method import SearchMethod
-from quietarm.metaheuristics.run_search import SearchRun
+from quietarm.metaheuristics.search_run import SearchProgress, SearchRun
 from quietarm.ocp import Front
 from quietarm.ocp.checks import Count, CountFromOne, numbers, quoted, table_of, whole
 from quietarm.ocp.files import check_writable
@@ -30,6 +32,9 @@ from quietarm.ocp.json_text import Texts, texts_of
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import Setting, versions
 from quietarm.ocp.saved import Answer, as_loaded, plain
+
+if TYPE_CHECKING:
+    from quietarm.metaheuristics.problems.given_function import GivenFunction
 
 Array = NDArray[np.float64]
 Numbers = tuple[float | None, ...]
@@ -144,6 +149,13 @@ class Search:
         A file that has what was told, written anew after each evaluation and never half-written.
         Where it exists the search goes on from it, and gives the same answer as one that was never
         interrupted; also with more evaluations, unless the method then asks for other candidates.
+    report : callable, optional
+        As of `search`; it is called in another thread, while `tell` waits.
+
+    Attributes
+    ----------
+    run : SearchRun
+        The run of its method, which has the candidates that were told whole.
 
     Raises
     ------
@@ -178,6 +190,7 @@ class Search:
         reevaluate: int = 1,
         name: str = "measured",
         state: str | Path | None = None,
+        report: Callable[[SearchProgress], None] | None = None,
     ) -> None:
         if not (algorithm is None or isinstance(algorithm, str | SearchMethod)):
             raise TypeError(
@@ -202,7 +215,7 @@ class Search:
             name=name,
             may_fail=True,  # whoever tells failures knows of them, and may mend the machine
         )
-        self._run = SearchRun.begin(
+        self.run = SearchRun.begin(
             problem,
             algorithm,
             population=population,
@@ -214,10 +227,10 @@ class Search:
         self._state = as_loaded(
             SearchState(
                 problem.searched,
-                self._run.method,
-                self._run.limits["evaluations"],
-                self._run.seed,
-                self._run.function.reevaluate,
+                self.run.method,
+                self.run.limits["evaluations"],
+                self.run.seed,
+                self.run.function.reevaluate,
                 population,
                 dict(settings or {}),
                 problem.reference or (),
@@ -232,7 +245,7 @@ class Search:
         self._failure: BaseException | None = None
         self._over = False
         self._closed = False
-        threading.Thread(target=self._exchange.work, args=(self._run,), daemon=True).start()
+        threading.Thread(target=self._exchange.work, args=(self.run, report), daemon=True).start()
         self._go_on()
 
     @property
@@ -325,7 +338,7 @@ class Search:
                 f"{self.evaluations} of the first {len(self._pending)} candidates are told; tell "
                 "the others before a front is asked for"
             )
-        return self._run.front()
+        return self.run.front()
 
     def close(self) -> None:
         """End the method's thread; what was told is in the file, if there is one.
@@ -383,7 +396,7 @@ class Search:
 
     def _place_of(self, row: Array, taken: Sequence[int]) -> int:
         """Return which of the candidates that wait is meant."""
-        size = self._run.function.upper - self._run.function.lower
+        size = self.run.function.upper - self.run.function.lower
         for place, pending in enumerate(self._pending):
             waits = self._values[place] is None and place not in taken
             if waits and (np.abs(pending - row) <= 1e-9 * size).all():
@@ -490,6 +503,47 @@ class Search:
             raise self._failure
 
 
+def search_with_state(
+    function: GivenFunction,
+    state: str | Path,
+    *,
+    begun: Callable[[SearchRun], None] | None = None,
+    **options: Any,
+) -> Front:
+    """Search a function whose values are kept in a file, and go on from what that has.
+
+    Parameters
+    ----------
+    function : GivenFunction
+        What is searched. With threads so many candidates are evaluated between two writings of the
+        file; a function of many candidates has all that the method asks for at once.
+    state : path
+        As of a `Search`.
+    begun : callable, optional
+        As of `search`.
+    **options
+        Further arguments of a `Search`.
+    """
+    known = Search(
+        function.lower,
+        function.upper,
+        objectives=function.objectives,
+        units=function.units,
+        constraints=function.constraints,
+        reference=function.reference,
+        name=function.searched.name,
+        state=state,
+        **options,
+    )
+    with closing(known):
+        if begun is not None:
+            begun(known.run)
+        while len(candidates := known.ask(most=function.at_once)):
+            values = function(candidates)
+            known.tell(candidates, *(np.where(table < UNUSABLE, table, np.nan) for table in values))
+        return known.front()
+
+
 class _Exchange:
     """Meeting place of a method's thread and whoever measures: one of them waits at any time."""
 
@@ -505,11 +559,11 @@ class _Exchange:
             raise _ClosedError
         return answer
 
-    def work(self, run: SearchRun) -> None:
+    def work(self, run: SearchRun, report: Callable[[SearchProgress], None] | None) -> None:
         """Run the method to its end, in its thread."""
         end: BaseException | None = None
         try:
-            run.finish()
+            run.finish(report)
         except _ClosedError:
             return
         except BaseException as error:  # of any kind: it is raised where one waits

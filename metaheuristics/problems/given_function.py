@@ -33,6 +33,10 @@ ALL_FAILED = 20
 """A function that gives no finite number for so many first candidates is refused."""
 
 
+MOST_AT_ONCE = 10_000
+"""Candidates in one call of a function of many, at most."""
+
+
 class FunctionFailedError(ValueError):
     """A user's own function raises an error, which is the cause of this one."""
 
@@ -128,6 +132,11 @@ class GivenFunction(ProblemFunction):
     def of_model(self) -> bool:
         """Return False: it may give another value the next time."""
         return False
+
+    @property
+    def at_once(self) -> int:
+        """Candidates that are evaluated at the same time, at most."""
+        return MOST_AT_ONCE if self._vectorized else self.threads
 
     @interruptible
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:

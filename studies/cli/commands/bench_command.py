@@ -87,7 +87,7 @@ def bench(given: Given) -> None:
     """  # noqa: D301  # \b is click's: do not rewrap
     from quietarm.metaheuristics import LostJobsError, finished_jobs, run_jobs
     from quietarm.metaheuristics.parallel import reach_scheduler
-    from quietarm.metaheuristics.run_search import SECONDS_OF_CANDIDATE
+    from quietarm.metaheuristics.search_run import SECONDS_OF_CANDIDATE
     from quietarm.studies.answers.read_answers import load_runs
     from quietarm.studies.bench.bench_page import reported_runs
     from quietarm.studies.bench.planned_jobs import (

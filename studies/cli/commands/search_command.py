@@ -13,7 +13,7 @@ import click
 
 from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS
 from quietarm.metaheuristics.named_method import POLISH
-from quietarm.metaheuristics.run_search import (
+from quietarm.metaheuristics.search_run import (
     SECONDS_OF_CANDIDATE,
     SearchRun,
     default_of_function,
@@ -98,6 +98,9 @@ _BY_GRADIENT = {
     option("--constraints", type=NAMES, metavar="NAME,NAME,...",
            help="Of --function: names of the violations that it returns beside the objectives, "
            "such as touch. [default: its attribute `constraints`]"),
+    option("--state", type=INPUT, metavar="FILE",
+           help="Of --function with --evaluations: keep what it returned in this file, after each "
+           "evaluation. After a kill the same line goes on from it."),
     *NOISE, METHOD_SETTING, SEED,
     option("--runs", default=1,
            help="Seeds, from --seed on; each has a file, such as front-seed0.json, once it is "
@@ -242,6 +245,7 @@ def _move(given: Given) -> _Asked:
     """The move that was typed, with its profile and its bounds."""
     given.refuse(["lower", "upper"], "is for --function, and this is a move with a --bound")
     given.refuse(["constraints"], "is for --function, and a move has limits")
+    given.refuse(["state"], "is for --function, and a search of a move is soon done again")
     try:
         objectives = checked_objectives(given.objectives)
     except ValueError as error:
@@ -259,7 +263,7 @@ def _move(given: Given) -> _Asked:
 
 
 _OF_FUNCTIONS = (
-    "function", "lower", "upper", "objectives", "constraints", "method", "population",
+    "function", "lower", "upper", "objectives", "constraints", "state", "method", "population",
     "generations", "evaluations", "noise", "reevaluate", "settings", "seed", "runs", "start_front",
     "workers", "threads", "yes", "output", "quiet", "plant_file",
 )  # fmt: skip
@@ -296,7 +300,11 @@ def _function(given: Given) -> _Asked:
             given.evaluations, given.population or given.generations or given.start_front
         )
     )
-    options = given.pick("lower", "upper", "constraints")
+    if given.state is not None:
+        given.refuse(
+            ["generations", "noise", "start_front", "runs"], "is not for a search with a --state"
+        )
+    options = given.pick("lower", "upper", "constraints", "state")
     if given.typed("objectives"):  # else the function's own
         options |= given.pick("objectives")
     return _Asked(given.function, method, options)

@@ -7,7 +7,7 @@ import pytest
 
 import quietarm as qa
 from quietarm.metaheuristics import PRESETS, Job, MoveFunction, NamedProblem, run_jobs
-from quietarm.metaheuristics.run_search import default_of_function
+from quietarm.metaheuristics.search_run import default_of_function
 from quietarm.ocp import FunctionFront, NoTaskError
 from quietarm.studies.compare import compare_fronts
 

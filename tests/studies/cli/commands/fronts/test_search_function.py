@@ -1,5 +1,9 @@
 """`quietarm search --function FILE.py:NAME`, and what other commands make of its fronts."""
 
+import signal
+import subprocess
+import sys
+
 import pytest
 
 import quietarm as qa
@@ -42,6 +46,15 @@ crash.lower, crash.upper = [-5, -5], 5
 def never(x):
     return parabolas(x), [1.0]
 never.lower, never.upper, never.constraints = [-5, -5], 5, ["wall"]
+
+def killed(x):
+    import os, signal
+    with open("calls.txt", "a") as calls:
+        calls.write(".")
+        if calls.tell() == 25:
+            os.kill(os.getpid(), signal.SIGKILL)
+    return parabolas(x)
+killed.lower, killed.upper = [-5, -5], 5
 
 number = 3
 """
@@ -93,6 +106,13 @@ def test_a_function_of_a_file_is_searched_saved_drawn_and_compared(call, folder)
         ("--function simulator.py:boxed --evaluations 9 -o a.html", "a.html is for a front"),
         ("single-link --target 1 --duration 1 --bound 1 --lower 1", "--lower is for --function"),
         ("single-link --target 1 --duration 1 --bound 1 --constraints a", "a move has limits"),
+        ("single-link --target 1 --duration 1 --bound 1 --state a", "--state is for --function"),
+        ("--function simulator.py:boxed --generations 9 --state a", "--generations is not for a"),
+        ("--function simulator.py:boxed --evaluations 9 --runs 2 --state a", "--runs is not for a"),
+        (
+            "--function simulator.py:boxed --evaluations 9 --state a.json -o a.json",
+            "a.json is given twice",
+        ),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(refused, line, words):
@@ -113,6 +133,26 @@ def test_what_is_stopped_keeps_the_candidates_until_then(call, folder, method):
     _, out, err = call(line)
     assert f"the first {count} candidates is shown and not written" in err
     assert f"{count} candidates in" in out
+
+
+@pytest.mark.slow_after(1)
+@pytest.mark.usefixtures("simulator")
+@pytest.mark.parametrize("method", ["gp", "es", "nsga2 --population 8 --reevaluate 2"])
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_a_killed_command_goes_on_with_what_its_file_has(folder, method):
+    """No candidate is evaluated again, and the front is that of a search without a stop."""
+    begin = [sys.executable, "-m", "quietarm", "search", "--quiet", "--evaluations", "60"]
+    begin += ["--method", *method.split()]
+    line = [*begin, "--function", "simulator.py:killed", "--state", "run.json", "-o", "a.json"]
+    assert subprocess.run(line, check=False).returncode == -signal.SIGKILL
+    subprocess.run(line, check=True)
+    once = 25 + (60 - 24)  # the call in which it was killed had returned nothing
+    assert len((folder / "calls.txt").read_text()) == once
+    subprocess.run([*begin, "--function", "simulator.py:killed", "-o", "b.json"], check=True)
+    kept, whole = (qa.Front.load(folder / name) for name in ("a.json", "b.json"))
+    assert kept == whole
+    subprocess.run(line, check=True)  # nothing is left to do
+    assert len((folder / "calls.txt").read_text()) == once + 60
 
 
 @pytest.mark.usefixtures("simulator")
