@@ -1,6 +1,7 @@
-"""Algorithms of pymoo 0.6.2 that draw random numbers without the seed, or keep state between runs.
+"""Algorithms of pymoo 0.6.2 that draw random numbers without the seed, keep state, or fail.
 
-With these, the seed of a search determines its result. Nothing else is changed.
+With these, the seed of a search determines its result, and a population of failures is no error.
+Nothing else is changed.
 """
 
 from __future__ import annotations
@@ -117,3 +118,22 @@ class CMOPSO(cmopso.CMOPSO):
     def _setup(self, problem: Any, **options: Any) -> None:
         super()._setup(problem, **options)
         self.elites.truncation = _SeededTruncation(self)
+
+
+def agemoea2(pop_size: int, **options: Any) -> Any:
+    """AGE-MOEA-II; pymoo's divides by zero if all of its individuals have the same values."""
+    from pymoo.algorithms.moo import age2  # not at the top: it needs numba
+
+    class Survival(age2.AGEMOEA2Survival):
+        """The survival, in which individuals at the ideal point have no distance."""
+
+        @staticmethod
+        def pairwise_distances(front: NDArray[np.float64], p: float) -> NDArray[np.float64]:
+            """Distances along the front, shape (individuals, individuals)."""
+            if (front <= 0).all(axis=1).any():
+                return np.zeros((len(front), len(front)))
+            return age2.AGEMOEA2Survival.pairwise_distances(front, p)
+
+    algorithm = age2.AGEMOEA2(pop_size, **options)
+    algorithm.survival = Survival()
+    return algorithm

@@ -349,6 +349,30 @@ def test_a_candidate_that_fails_is_counted_and_comes_last():
     assert (front.coefficients[:, 1] <= 0).all()
 
 
+WITH_POPULATION = [name for name, preset in PRESETS.items() if not preset.is_function]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * (PRESETS[name].needs == "numba"))
+        for name in WITH_POPULATION
+        if name != "memetic"  # it takes the gradient of a model
+    ],
+)
+def test_a_first_population_may_fail_as_a_whole(name):
+    """A simulator that is mended meanwhile, or a box whose first candidates all fail."""
+    calls = []
+
+    def fails_at_first(x):
+        calls.append(x)
+        return [np.nan, np.nan] if len(calls) <= 12 else parabolas(x)
+
+    front = qa.search(fails_at_first, **BOX, evaluations=80, population=10, algorithm=name)
+    assert front.failed == 12
+    assert front.points
+
+
 def test_few_candidates_have_a_small_population_unless_it_is_the_papers():
     # 50 generations, 10 individuals at least, and the preset's from 5,000 candidates on
     sizes = [PRESETS["nsga2"].population_for(count) for count in (200, 1_000, 5_000, 40_000)]
