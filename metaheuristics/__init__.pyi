@@ -27,7 +27,7 @@ from .run_search import search as search
 from .score import Indicator as Indicator
 from .score import Reference as Reference
 from .search_run import SearchProgress as SearchProgress
+from .search_state import SearchState as SearchState
 from .spread import SEARCH_RESIDUAL as SEARCH_RESIDUAL
 from .spread import Spread as Spread
 from .told_search import Search as Search
-from .told_search import SearchState as SearchState

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from quietarm.metaheuristics.methods.search_method import SearchMethod
@@ -13,8 +14,10 @@ from quietarm.metaheuristics.search_run import (
     SearchRun,
     profile_to_search,
 )
+from quietarm.metaheuristics.search_state import KeptValues, StateFile
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, takes
+from quietarm.ocp.files import check_writable
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 
 if TYPE_CHECKING:
@@ -107,8 +110,9 @@ def search(
         As of a `RecordedFunction`: noise of residual and energy, as a share, and how often a
         candidate that is kept is evaluated.
     state : path, optional
-        Of a function with `evaluations`: a file that has what it returned, written after each
-        evaluation. After a kill the same search goes on from it.
+        Of a function with `evaluations`: a file to which each of its results is written. After a
+        kill the same search takes them from there. It does not know the function's code: give
+        another file if that changes.
 
     Returns
     -------
@@ -158,24 +162,10 @@ def search(
         from quietarm.metaheuristics.problems.given_function import GivenFunction
 
         problem = GivenFunction(task, objectives=objectives, threads=threads, **names_of_function)
-        if state is not None:
-            from quietarm.metaheuristics.told_search import search_with_state
-
-            _refuse_with_state({"generations": generations, "start": start, "noise": noise})
-            return search_with_state(
-                problem,
-                state,
-                begun=begun,
-                report=report,
-                algorithm=algorithm,
-                population=population,
-                evaluations=evaluations,
-                settings=settings,
-                seed=seed,
-                reevaluate=reevaluate,
-            )
     if state is not None:
-        raise ValueError("state is for a function; a search of a move is soon done again")
+        if isinstance(task, PointToPoint):
+            raise ValueError("state is for a function; a search of a move is soon done again")
+        _refuse_with_state({"generations": generations, "start": start, "noise": noise})
     run = SearchRun.begin(
         problem,
         algorithm,
@@ -188,12 +178,27 @@ def search(
         noise=noise,
         reevaluate=reevaluate,
     )
+    if state is not None:
+        _keep(run, check_writable(state), population, settings)
     if begun is not None:
         begun(run)
     # pymoo's NSGA-III leaves all warnings of the process switched off
     with warnings.catch_warnings():
         run.finish(report)
     return run.front()
+
+
+def _keep(
+    run: SearchRun, path: Path, population: int | None, settings: Mapping[str, object] | None
+) -> None:
+    """Keep what a user's function returns in a file, with what that has from before."""
+    from quietarm.metaheuristics.problems.given_function import GivenFunction
+
+    if not isinstance(run.function.asked, GivenFunction):
+        raise ValueError("state is for a function of your own; leave it out")
+    function = copy(run.function.asked)  # the one that is given may be searched again
+    function.kept = KeptValues(StateFile(path, run.state(population, settings)))
+    run.function.asked = function
 
 
 def _refuse_with_state(options: Mapping[str, object]) -> None:

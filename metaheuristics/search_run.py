@@ -15,10 +15,12 @@ import numpy as np
 from quietarm.metaheuristics.methods.preset import Preset
 from quietarm.metaheuristics.methods.presets import PAPER_BOX, PRESETS, preset_of
 from quietarm.metaheuristics.methods.search_method import SearchMethod
+from quietarm.metaheuristics.search_state import SearchState
 from quietarm.ocp import Front, JointProfile, PointToPoint
 from quietarm.ocp.checks import instance, whole
 from quietarm.ocp.objectives import checked_objectives
 from quietarm.ocp.planning.choose_profile import choose_profile
+from quietarm.ocp.saved import as_loaded
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -264,6 +266,22 @@ class SearchRun:
         from pymoo.core.algorithm import Algorithm as PymooAlgorithm
 
         return isinstance(self.chosen, PymooAlgorithm)
+
+    def state(self, population: int | None, settings: Mapping[str, object] | None) -> SearchState:
+        """Return the state of a search of a function that begins so, with nothing told."""
+        problem: Any = self.function.asked
+        stated: Any = dict(settings or {})
+        state = SearchState(
+            problem.searched,
+            self.method,
+            self.limits["evaluations"],
+            self.seed,
+            self.function.reevaluate,
+            population,
+            stated,
+            problem.reference or (),
+        )
+        return as_loaded(state)
 
     def front(self) -> Front:
         """Make the front of what was found until now."""

@@ -10,126 +10,24 @@ from __future__ import annotations
 import queue
 import threading
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
-from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quietarm.interrupts import interruptible
-from quietarm.metaheuristics.evaluation.population import UNUSABLE
 from quietarm.metaheuristics.methods.search_method import SearchMethod
-from quietarm.metaheuristics.search_run import SearchProgress, SearchRun
+from quietarm.metaheuristics.search_run import SearchRun
+from quietarm.metaheuristics.search_state import StateFile, Told, or_none
 from quietarm.ocp import Front
-from quietarm.ocp.checks import Count, CountFromOne, numbers, quoted, table_of, whole
+from quietarm.ocp.checks import numbers, quoted, table_of, whole
 from quietarm.ocp.files import check_writable
-from quietarm.ocp.front.searched_function import SearchedFunction
-from quietarm.ocp.json_text import Texts, texts_of
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
-from quietarm.ocp.record import Setting, versions
-from quietarm.ocp.saved import Answer, as_loaded, plain
-
-if TYPE_CHECKING:
-    from quietarm.metaheuristics.problems.given_function import GivenFunction
+from quietarm.ocp.record import Setting
 
 Array = NDArray[np.float64]
-Numbers = tuple[float | None, ...]
-
-
-@dataclass(frozen=True)
-class Told:
-    """One candidate and what was told of it; None stands for what is not finite.
-
-    Attributes
-    ----------
-    number : int
-        Which candidate it is, from 1.
-    coefficients, objectives, violations : tuple of float
-        The candidate and its values.
-    """
-
-    number: CountFromOne
-    coefficients: tuple[float, ...]
-    objectives: Numbers
-    violations: Numbers = ()
-
-    @property
-    def failed(self) -> bool:
-        """Return whether one of its values was not finite."""
-        return None in self.objectives or None in self.violations
-
-    @cached_property
-    def texts(self) -> Texts:
-        """Texts in the file of a state, made once, however often that is written."""
-        return texts_of(plain(self), margin="\n    ")
-
-
-@dataclass(frozen=True)
-class SearchState(Answer):
-    """The state of a `Search`: what was asked for, and what was told until now.
-
-    Attributes
-    ----------
-    function : SearchedFunction
-        Box, objectives, units and constraints.
-    method : str
-        Name of the method.
-    evaluations, seed, reevaluate : int
-        As of a `Search`.
-    population : int or None
-        As of a `Search`.
-    settings : mapping
-        The method's settings that were given.
-    reference : tuple of float
-        The corner of hypervolumes; empty where it follows from what is found.
-    told : tuple of Told
-        The candidates that were measured, in the order in which they were asked for.
-    versions : mapping of str to str
-        Of the software: another version may ask for other candidates.
-    """
-
-    kind: ClassVar[str] = "search"
-    version: ClassVar[int] = 1
-
-    function: SearchedFunction
-    method: str
-    evaluations: CountFromOne
-    seed: Count = 0
-    reevaluate: CountFromOne = 1
-    population: int | None = None
-    settings: Mapping[str, Setting] = field(default_factory=dict, hash=False)
-    reference: tuple[float, ...] = ()
-    told: tuple[Told, ...] = ()
-    versions: Mapping[str, str] = field(default_factory=versions, hash=False)
-
-    def _content(self) -> dict[str, Any]:
-        entries = plain(replace(self, told=()))
-        return {**entries, "told": [told.texts for told in self.told]}
-
-    def differences(self, other: SearchState) -> list[str]:
-        """List what another search would be asked for in another way, such as: seed is 3, not 4.
-
-        The number of evaluations may be another: what is asked for tells whether that matters.
-        """
-        ours, others = self._stated(), other._stated()
-        return [
-            f"{_with_verb(name)} {_shown(value)}, not {_shown(others[name])}"
-            for name, value in ours.items()
-            if value != others[name]
-        ]
-
-    def _stated(self) -> dict[str, Any]:
-        """Return what was asked for, by name."""
-        own = ("told", "versions", "evaluations", "function")
-        named = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        of_function = {
-            entry.name: getattr(self.function, entry.name) for entry in fields(self.function)
-        }
-        return of_function | {name: named[name] for name in named if name not in own}
 
 
 class Search:
@@ -149,13 +47,6 @@ class Search:
         A file that has what was told, written anew after each evaluation and never half-written.
         Where it exists the search goes on from it, and gives the same answer as one that was never
         interrupted; also with more evaluations, unless the method then asks for other candidates.
-    report : callable, optional
-        As of `search`; it is called in another thread, while `tell` waits.
-
-    Attributes
-    ----------
-    run : SearchRun
-        The run of its method, which has the candidates that were told whole.
 
     Raises
     ------
@@ -190,14 +81,13 @@ class Search:
         reevaluate: int = 1,
         name: str = "measured",
         state: str | Path | None = None,
-        report: Callable[[SearchProgress], None] | None = None,
     ) -> None:
         if not (algorithm is None or isinstance(algorithm, str | SearchMethod)):
             raise TypeError(
                 f"algorithm is {quoted(algorithm)}; give a name, such as 'nsga2', or an object of "
                 "a SearchMethod: the search is begun again from it after a kill"
             )
-        self._path = None if state is None else check_writable(state)
+        path = None if state is None else check_writable(state)
         self._exchange = _Exchange()
         # not at the top: it loads pymoo, which takes longer than all of quietarm
         from quietarm.metaheuristics.problems.given_function import ALL_FAILED, GivenFunction
@@ -215,7 +105,7 @@ class Search:
             name=name,
             may_fail=True,  # whoever tells failures knows of them, and may mend the machine
         )
-        self.run = SearchRun.begin(
+        self._run = SearchRun.begin(
             problem,
             algorithm,
             population=population,
@@ -224,28 +114,15 @@ class Search:
             seed=seed,
             reevaluate=reevaluate,
         )
-        self._state = as_loaded(
-            SearchState(
-                problem.searched,
-                self.run.method,
-                self.run.limits["evaluations"],
-                self.run.seed,
-                self.run.function.reevaluate,
-                population,
-                dict(settings or {}),
-                problem.reference or (),
-            )
-        )
-        self._begun_with = self._state.evaluations
-        self._written = _stamp(self._path)
-        self._known = {told.number: told for told in self._resumed()}
+        self._state = self._run.state(population, settings)
+        self._file = StateFile(path, self._state)
         self._told = list[Told]()
         self._pending: Array = np.empty((0, len(problem.lower)))
         self._values: list[Told | None] = []
         self._failure: BaseException | None = None
         self._over = False
         self._closed = False
-        threading.Thread(target=self._exchange.work, args=(self.run, report), daemon=True).start()
+        threading.Thread(target=self._exchange.work, args=(self._run,), daemon=True).start()
         self._go_on()
 
     @property
@@ -317,8 +194,8 @@ class Search:
             self._values[place] = Told(
                 len(self._told) + place + 1,
                 tuple(self._pending[place].tolist()),
-                _or_none(of_candidate),
-                _or_none(passed),
+                or_none(of_candidate),
+                or_none(passed),
             )
         before = self.evaluations - count
         self._save()
@@ -338,7 +215,7 @@ class Search:
                 f"{self.evaluations} of the first {len(self._pending)} candidates are told; tell "
                 "the others before a front is asked for"
             )
-        return self.run.front()
+        return self._run.front()
 
     def close(self) -> None:
         """End the method's thread; what was told is in the file, if there is one.
@@ -351,24 +228,6 @@ class Search:
     def __del__(self) -> None:
         if exchange := vars(self).get("_exchange"):
             exchange.close()
-
-    def _resumed(self) -> tuple[Told, ...]:
-        """Return what the file has, if there is one; ValueError if it is of another search."""
-        if self._path is None or not self._path.exists():
-            return ()
-        before = SearchState.load(self._path)
-        if differences := before.differences(self._state):
-            raise ValueError(
-                f"{self._path} is of another search: its {', its '.join(differences)}; give what "
-                "it was begun with, or another file"
-            )
-        if before.evaluations > self._state.evaluations:
-            raise ValueError(
-                f"{self._path} is of {before.evaluations} evaluations, not "
-                f"{self._state.evaluations}; give {before.evaluations} or more, or another file"
-            )
-        self._begun_with = before.evaluations
-        return before.told
 
     def _refuse_pair(self, objectives: Any, candidates: int) -> None:
         """Refuse what a function with constraints returns, in the place of its objectives."""
@@ -387,7 +246,8 @@ class Search:
             return
         known = [*self._told, *(told for told in self._values if told is not None)]
         if all(told.failed for told in known):
-            kept = "" if self._path is None else f"; {self._path} keeps them"
+            path = self._file.path
+            kept = "" if path is None else f"; {path} keeps them"
             warnings.warn(
                 f"all {len(known)} candidates that were told have failed{kept}; mend what measures "
                 "and go on, failures count as candidates, or begin again with other bounds",
@@ -396,7 +256,7 @@ class Search:
 
     def _place_of(self, row: Array, taken: Sequence[int]) -> int:
         """Return which of the candidates that wait is meant."""
-        size = self.run.function.upper - self.run.function.lower
+        size = self._run.function.upper - self._run.function.lower
         for place, pending in enumerate(self._pending):
             waits = self._values[place] is None and place not in taken
             if waits and (np.abs(pending - row) <= 1e-9 * size).all():
@@ -428,20 +288,8 @@ class Search:
         return table
 
     def _save(self) -> None:
-        if self._path is None:
-            return
-        self._refuse_another_writer()
         partly = [told for told in self._values if told is not None]
-        replace(self._state, told=(*self._told, *partly)).save(self._path)
-        self._written = _stamp(self._path)
-
-    def _refuse_another_writer(self) -> None:
-        """Refuse to write over what another search has told the same file since."""
-        if _stamp(self._path) != self._written:
-            raise ValueError(
-                f"{self._path} was changed by another program since this search read it; begin "
-                "again from the file, or give each search a file of its own"
-            )
+        self._file.save([*self._told, *partly])
 
     def _hand_over(self) -> None:
         """Give the method the values that it waits for."""
@@ -472,25 +320,8 @@ class Search:
             return False
         self._pending = asked
         before = len(self._told)
-        self._values = [self._known.get(before + i + 1) for i in range(len(asked))]
-        for told, row in zip(self._values, asked):
-            if told is not None and told.coefficients != tuple(row.tolist()):
-                raise ValueError(self._why_another(told.number))
+        self._values = [self._file.known(before + i + 1, row) for i, row in enumerate(asked)]
         return True
-
-    def _why_another(self, number: int) -> str:
-        """Say why the file has another candidate than the one that is asked for here."""
-        evaluations = self._state.evaluations
-        if self._begun_with != evaluations:
-            return (
-                f"{self._path} was begun with {self._begun_with} evaluations, and with "
-                f"{evaluations} {self._state.method} asks for another candidate {number}; give "
-                f"{self._begun_with}, or another file"
-            )
-        return (
-            f"{self._path} is of another version: its candidate {number} is not the one that is "
-            "asked for here; go on with the versions that it names, or give another file"
-        )
 
     def _refuse_if_closed(self) -> None:
         """Refuse to ask or tell a search that is closed: its method would never answer."""
@@ -501,47 +332,6 @@ class Search:
     def _raise_failure(self) -> None:
         if self._failure is not None:
             raise self._failure
-
-
-def search_with_state(
-    function: GivenFunction,
-    state: str | Path,
-    *,
-    begun: Callable[[SearchRun], None] | None = None,
-    **options: Any,
-) -> Front:
-    """Search a function whose values are kept in a file, and go on from what that has.
-
-    Parameters
-    ----------
-    function : GivenFunction
-        What is searched. With threads so many candidates are evaluated between two writings of the
-        file; a function of many candidates has all that the method asks for at once.
-    state : path
-        As of a `Search`.
-    begun : callable, optional
-        As of `search`.
-    **options
-        Further arguments of a `Search`.
-    """
-    known = Search(
-        function.lower,
-        function.upper,
-        objectives=function.objectives,
-        units=function.units,
-        constraints=function.constraints,
-        reference=function.reference,
-        name=function.searched.name,
-        state=state,
-        **options,
-    )
-    with closing(known):
-        if begun is not None:
-            begun(known.run)
-        while len(candidates := known.ask(most=function.at_once)):
-            values = function(candidates)
-            known.tell(candidates, *(np.where(table < UNUSABLE, table, np.nan) for table in values))
-        return known.front()
 
 
 class _Exchange:
@@ -559,11 +349,11 @@ class _Exchange:
             raise _ClosedError
         return answer
 
-    def work(self, run: SearchRun, report: Callable[[SearchProgress], None] | None) -> None:
+    def work(self, run: SearchRun) -> None:
         """Run the method to its end, in its thread."""
         end: BaseException | None = None
         try:
-            run.finish(report)
+            run.finish()
         except _ClosedError:
             return
         except BaseException as error:  # of any kind: it is raised where one waits
@@ -585,26 +375,3 @@ class _Exchange:
 
 class _ClosedError(BaseException):
     """Error in a method's thread when nobody measures any more."""
-
-
-def _stamp(path: Path | None) -> tuple[int, int] | None:
-    """Return when a file was changed, and its inode, which each whole writing makes anew."""
-    if path is None or not path.exists():
-        return None
-    status = path.stat()
-    return status.st_mtime_ns, status.st_ino
-
-
-def _with_verb(name: str) -> str:
-    return f"{name} {'are' if name.endswith('s') else 'is'}"
-
-
-def _shown(value: Any) -> str:
-    """A value of a state in a few words."""
-    if value is None or value == () or value == {}:
-        return "not given"
-    return quoted(list(value) if isinstance(value, tuple) else value)
-
-
-def _or_none(values: Array) -> Numbers:
-    return tuple(value if np.isfinite(value) else None for value in values.tolist())

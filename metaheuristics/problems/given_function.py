@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from quietarm.interrupts import interruptible
 from quietarm.metaheuristics.evaluation.population import UNUSABLE, replace_failures
 from quietarm.metaheuristics.problems.problem_function import ProblemFunction, Rows
+from quietarm.metaheuristics.search_state import KeptValues
 from quietarm.ocp import Front
 from quietarm.ocp.checks import clipped, numbers, quoted, table_of, whole, words_of_error
 from quietarm.ocp.front.function_front import (
@@ -29,12 +30,10 @@ from quietarm.ocp.record import Record
 
 Array = NDArray[np.float64]
 Function = Callable[..., Any]
+Keep = Callable[[int, Array, Array], None]
+"""Called with candidates that were evaluated: the place of the first, them and their values."""
 ALL_FAILED = 20
 """A function that gives no finite number for so many first candidates is refused."""
-
-
-MOST_AT_ONCE = 10_000
-"""Candidates in one call of a function of many, at most."""
 
 
 class FunctionFailedError(ValueError):
@@ -127,16 +126,12 @@ class GivenFunction(ProblemFunction):
         self._function = function
         self._vectorized = _said(stated("vectorized", vectorized))
         self._first_failures = None if may_fail else FirstFailures()
+        self.kept: KeptValues | None = None
 
     @property
     def of_model(self) -> bool:
         """Return False: it may give another value the next time."""
         return False
-
-    @property
-    def at_once(self) -> int:
-        """Candidates that are evaluated at the same time, at most."""
-        return MOST_AT_ONCE if self._vectorized else self.threads
 
     @interruptible
     def __call__(self, candidates: ArrayLike) -> tuple[Array, Array]:
@@ -152,8 +147,10 @@ class GivenFunction(ProblemFunction):
 
     def fill(self, candidates: Array, values: Array) -> None:
         """Write the values of candidates into a table, each row or block as it is evaluated."""
-        if len(candidates):
+        if self.kept is None:
             self._fill(candidates, values)
+        else:
+            self._fill_unknown(candidates, values, self.kept)
         if self._first_failures is not None:
             self._first_failures.note(self._name, values[:, 0] >= UNUSABLE)
 
@@ -182,21 +179,44 @@ class GivenFunction(ProblemFunction):
         of_function: Any = points
         return FunctionFront(points=of_function, record=record, function=self.searched, **entries)
 
-    def _fill(self, table: Array, values: Array) -> None:
-        if self._vectorized is None:
-            _write(self._first(table[:1]), values[:1])
-            table, values = table[1:], values[1:]
+    def _fill_unknown(self, candidates: Array, values: Array, kept: KeptValues) -> None:
+        """Evaluate the candidates whose values are not known, and keep those as they come."""
+        count = len(self.objectives)
+        first, new = kept.take(candidates, values)
+
+        def keep(place: int, part: Array, rows: Array) -> None:
+            kept.add(first + place, part, rows, count)
+
+        places = np.flatnonzero(new)
+        for run in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1):
+            if len(run):
+                between = slice(run[0], run[-1] + 1)
+                self._fill(candidates[between], values[between], int(run[0]), keep)
+
+    def _fill(self, table: Array, values: Array, place: int = 0, keep: Keep | None = None) -> None:
+        """Evaluate candidates; each row or block is told, with its place, when it is there."""
+
+        def write(place: int, part: Array, rows: Array, result: Array) -> None:
+            _write(result, rows)
+            if keep is not None:
+                keep(place, part, rows)
+
+        if len(table) and self._vectorized is None:
+            write(place, table[:1], values[:1], self._first(table[:1]))
+            place, table, values = place + 1, table[1:], values[1:]
         count = len(table) if not self._vectorized else min(self.threads, len(table))
         if not count:
             return
 
-        def evaluate(part: Array, rows: Array) -> None:
-            _write(self._many(part) if self._vectorized else self._one(part[0]), rows)
+        def evaluate(numbers: NDArray[np.int64], part: Array, rows: Array) -> None:
+            result = self._many(part) if self._vectorized else self._one(part[0])
+            write(int(numbers[0]), part, rows, result)
 
-        parts = np.array_split(table, count), np.array_split(values, count)
+        numbers = np.arange(place, place + len(table))
+        parts = [np.array_split(each, count) for each in (numbers, table, values)]
         if self.threads == 1 or count == 1:
-            for part, rows in zip(*parts):
-                evaluate(part, rows)
+            for block in zip(*parts):
+                evaluate(*block)
             return
         with ThreadPoolExecutor(self.threads) as pool:
             for _ in pool.map(evaluate, *parts):

@@ -6,13 +6,14 @@ import time
 from dataclasses import replace
 from itertools import pairwise
 from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quietarm.ocp.checks import instance, takes
 from quietarm.ocp.front.front import Front
-from quietarm.ocp.front.points import evaluated, non_dominated
+from quietarm.ocp.front.points import Entries, evaluated, non_dominated
 from quietarm.ocp.objectives import RESIDUAL_AND_ENERGY
 from quietarm.ocp.record import versions
 from quietarm.ocp.task import PointToPoint
@@ -39,14 +40,15 @@ def interpolate_front(front: Front) -> Front:
     Returns
     -------
     Front
-        The points that are not dominated. Its record counts the motions that were evaluated as
-        candidates, and as the setting ``interpolated``. Of `infeasible`, that break a limit, and
-        `failed`, at which CVODES fails, those of the given front are in as well.
+        The points that are not dominated, without the progress of their search. Its record counts
+        the motions that were tried as candidates, and as the setting ``interpolated``.
+        `infeasible` and `failed` count those of the given front as well.
 
     Raises
     ------
     NoTaskError
-        When the front is that of a function, whose calls may be dear: interpolate its coefficients.
+        When the front is that of a function: interpolate the coefficients of its points, and call
+        the function.
     ValueError
         When the front has no point.
     """
@@ -56,9 +58,10 @@ def interpolate_front(front: Front) -> Front:
     between = coefficients_between(front)
     motions = evaluated(front.task, front.profile, between, objectives=front.objectives)
     given = front.record
+    before: Any = given.settings.get(INTERPOLATED, 0)
     record = replace(
         given,
-        settings={**given.settings, INTERPOLATED: len(between)},
+        settings={**given.settings, INTERPOLATED: before + len(between)},
         evaluations=given.evaluations + len(between),
         versions=versions(),
         seconds=given.seconds + time.perf_counter() - began,
@@ -69,6 +72,8 @@ def interpolate_front(front: Front) -> Front:
         record=record,
         failed=front.failed + motions.failed,
         infeasible=front.infeasible + motions.infeasible,
+        history=(),  # of the search, whose candidates were fewer
+        entries=Entries(),
     )
 
 

@@ -11,12 +11,14 @@ import click
 
 from quietarm.models import load_plant_file
 from quietarm.models.units import UNITS, parse_quantity
+from quietarm.ocp import Front, Plan, evaluate_coefficients
 from quietarm.ocp.checks import joined
 from quietarm.ocp.files import check_writable, write_whole
-from quietarm.studies.answers.read_answers import load_fronts_and_plans, load_plans
+from quietarm.studies.answers.read_answers import load_fronts_and_plans
 from quietarm.studies.cli.given import Given
 from quietarm.studies.cli.options import Command, busy, counting, option
 from quietarm.studies.cli.outputs import finish, settings_of_studies
+from quietarm.studies.cli.quantities import RESIDUAL_LIMIT
 from quietarm.studies.cli.types import INPUT, Named, Parsed
 from quietarm.views.formats.export_format import (
     DATASET,
@@ -140,6 +142,9 @@ def _metavar(settings: Sequence[tuple[str, ExportSetting]]) -> str:
     option("--output", "-o", type=Parsed("file", _output), required=True,
            help="The file, whose ending is the format; move.c has move.h beside it. - is standard "
            "output."),
+    option("--residual-limit", metavar="LENGTH",
+           help="Of a FRONT for a controller or a film: the motion of least energy within this "
+           "residual, such as 1mm."),
 ])  # fmt: skip
 def export(given: Given) -> None:
     """Write a saved PLAN for a controller, as a film or as a page.
@@ -156,7 +161,8 @@ def export(given: Given) -> None:
     the program ffmpeg.
 
     The page (html) is one file that needs no network. Of a saved FRONT one drags along the
-    trade-off and sees each point's motion; further fronts and plans of the move lie beside it.
+    trade-off and sees each point's motion; further fronts and plans of the move lie beside it. Any
+    other format takes the motion of a FRONT that --residual-limit chooses.
 
     A format of your own stands beside a plant in its --plant-file.
 
@@ -173,12 +179,13 @@ def export(given: Given) -> None:
       quietarm export moves.zarr --output moves.c
       quietarm export plan.json zvd.json --output move.gif --speed 25%
       quietarm export front.json nsga2.json --output front.html
+      quietarm export front.json --residual-limit 1mm --output move.csv
     """  # noqa: D301  # \b is click's: do not rewrap
     form = _format(given)
     settings = _settings(given, form)
     if given.output != STDOUT:
         form.check_path(given.output)
-    answers = _answers(form, given.plans)
+    answers = _answers(form, given)
     if given.output == STDOUT:
         made = form.make(answers, STDOUT, settings, lambda done, total: None)
         content = made.files[STDOUT]
@@ -194,8 +201,9 @@ def _progress(form: ExportFormat) -> AbstractContextManager[Progress | None]:
     return counting(0, form.pieces) if form.pieces else busy("making the file")
 
 
-def _answers(form: ExportFormat, paths: Sequence[Path]) -> Mapping[str, Any]:
+def _answers(form: ExportFormat, given: Given) -> Mapping[str, Any]:
     """Load the answers to export, by their names, and evaluate their motions again."""
+    paths: Sequence[Path] = given.plans
     if len(paths) == 1 and paths[0].is_dir():
         if DATASET not in form.takes:
             raise ValueError(
@@ -206,7 +214,27 @@ def _answers(form: ExportFormat, paths: Sequence[Path]) -> Mapping[str, Any]:
 
         return {paths[0].stem: moves_to_export(paths[0])}
     form.refuse_number(len(paths))
-    return load_fronts_and_plans(paths) if FRONT in form.takes else load_plans(paths)
+    answers = load_fronts_and_plans(paths)
+    if FRONT in form.takes:
+        given.refuse([RESIDUAL_LIMIT], f"chooses a motion, and {form.name} shows whole fronts")
+        return answers
+    if not any(isinstance(answer, Front) for answer in answers.values()):
+        given.refuse([RESIDUAL_LIMIT], "is for a front, and a plan is one motion")
+    return {name: _plan_of(name, answer, given) for name, answer in answers.items()}
+
+
+def _plan_of(name: str, answer: Front | Plan, given: Given) -> Plan:
+    """A plan as it is; of a front the motion that was chosen."""
+    if isinstance(answer, Plan):
+        return answer
+    limit = given.read_residual_limit(answer.task.plant)
+    if limit is None:
+        raise ValueError(
+            f"{name} is a front; choose one of its motions by its residual, such as "
+            "--residual-limit 1mm"
+        )
+    point = answer.cheapest(residual_limit=limit)
+    return evaluate_coefficients(answer.task, point.coefficients, profile=answer.profile)
 
 
 def _format(given: Given) -> ExportFormat:

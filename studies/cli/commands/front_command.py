@@ -92,8 +92,9 @@ _SEARCHES = {
            "plain cycloid, and say by how much the two differ."),
     option("--polish", type=INPUT, metavar="FILE", help="Improve the points of this front, by any "
            "method: from each to less energy and no larger residual."),
-    option("--interpolate", type=INPUT, metavar="FILE", help="Add to this front, by any method, "
-           "about 300 motions between its points."),
+    option("--interpolate", type=INPUT, metavar="FILE", help="Simulate about 300 motions "
+           "between the points of this front, by any method, and add those that are not "
+           "dominated."),
     output_option({".json": "the front", ".csv": "its points", PICTURE: "a picture"},
                   formats=["front"]),
 )  # fmt: skip
@@ -212,7 +213,11 @@ def _interpolate(given: Given) -> None:
         finer = interpolate_front(before)
     added = sum(point not in before.points for point in finer.points)
     tried = finer.record.evaluations - before.record.evaluations
-    note = f"{added} of {counted(tried, 'motion')} between its points are on the front"
+    note = (
+        f"{added} of {counted(tried, 'motion')} tried between its points were added"
+        if tried
+        else "no motion was tried: its points are as close as they would become"
+    )
     files = answer_files(given.output, lambda: pictures.front_figure([finer]), finer, [before])
     finish(files, *search_lines([finer], [note]))
 
@@ -224,4 +229,6 @@ def _front_to_change(given: Given, option: str, further: Sequence[str] = ()) -> 
         f"is not for --{option}, which keeps the task, profile and bound of its front",
     )
     with busy("checking"):
-        return load_front(getattr(given, option))
+        before = load_front(getattr(given, option))
+    check_page(given.output, before.objectives)
+    return before

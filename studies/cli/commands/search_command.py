@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from quietarm.metaheuristics.search_run import (
     SearchRun,
     default_of_function,
 )
+from quietarm.metaheuristics.search_state import KeptValues
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.ocp.objectives import checked_objectives
@@ -99,8 +100,9 @@ _BY_GRADIENT = {
            help="Of --function: names of the violations that it returns beside the objectives, "
            "such as touch. [default: its attribute `constraints`]"),
     option("--state", type=INPUT, metavar="FILE",
-           help="Of --function with --evaluations: keep what it returned in this file, after each "
-           "evaluation. After a kill the same line goes on from it."),
+           help="Of --function: write each of its results to this file. After a kill, Ctrl-C or an "
+           "error, type the same command again: it takes finished results from the file. Give "
+           "another file if you change the function."),
     *NOISE, METHOD_SETTING, SEED,
     option("--runs", default=1,
            help="Seeds, from --seed on; each has a file, such as front-seed0.json, once it is "
@@ -173,17 +175,21 @@ def search(given: Given) -> None:
                 display.finish(front)
         except (Exception, SystemExit, KeyboardInterrupt) as error:
             stopped = asked.until_the_stop()
-            if not (fronts or stopped):
-                raise
             words = _kept_words(fronts, stopped, given.runs, is_written=bool(given.output))
+            words = "; ".join(filter(None, [words, asked.state_words()]))
+            if not (fronts or stopped) and not words:
+                raise
             trouble = _trouble(error, words)
     fronts.sort(key=lambda front: front.record.seed or 0)
     shown = fronts or stopped  # no statistics of seeds with one that was cut short
+    if not shown and trouble is not None:
+        raise trouble
     if not any(front.points for front in shown):
         raise trouble or SolverFailedError(f"{method}: {shown[0].why_empty()}")
     finish(
         _files(given.output, [*fronts, *stopped], several),
         *(function_lines(shown) if given.function else search_lines(shown)),
+        *asked.remarks,
         *given.remarks,
         trouble=trouble,
     )
@@ -200,10 +206,25 @@ class _Asked:
     method: str
     options: dict[str, Any]
     run: SearchRun | None = None
+    remarks: list[str] = field(default_factory=list[str])
 
     def begin(self, run: SearchRun) -> None:
-        """Take note of the search that begins."""
+        """Take note of the search that begins, and of results that a file has from before."""
         self.run = run
+        if kept := self._kept():
+            resumed = counted(kept.resumed, "result")
+            self.remarks += [f"{resumed} from {kept.path}"] * (kept.resumed > 0)
+
+    def state_words(self) -> str:
+        """Say what the file of a search that was stopped has; nothing without a file."""
+        kept = self._kept()
+        if not kept or not kept.count:
+            return ""
+        return f"{kept.path} has {counted(kept.count, 'result')}, type the same command to go on"
+
+    def _kept(self) -> KeptValues | None:
+        """The values in a file, of a function with one."""
+        return None if self.run is None else getattr(self.run.function.asked, "kept", None)
 
     def until_the_stop(self) -> list[Front]:
         """Return the front of the candidates of the search that was stopped, if it has one."""
@@ -228,6 +249,8 @@ def _kept_words(
     fronts: Sequence[Front], stopped: Sequence[Front], runs: int, *, is_written: bool
 ) -> str:
     """Say what is left of a search that was stopped: 3 of 5 seeds, the front of 80 candidates."""
+    if not (fronts or stopped):
+        return ""
     several = runs > 1
     kept = [counted(len(fronts), "front")] if fronts else []
     kept += [
@@ -302,7 +325,8 @@ def _function(given: Given) -> _Asked:
     )
     if given.state is not None:
         given.refuse(
-            ["generations", "noise", "start_front", "runs"], "is not for a search with a --state"
+            ["generations", "noise", "start_front", "runs", "workers"],
+            "is not for a search with a --state",
         )
     options = given.pick("lower", "upper", "constraints", "state")
     if given.typed("objectives"):  # else the function's own

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import quietarm as qa
-from quietarm.metaheuristics import told_search
+from quietarm.metaheuristics import search_state
 from quietarm.ocp.json_text import texts_of
 
 SCRIPT = """
@@ -95,11 +95,11 @@ def test_a_told_candidate_is_encoded_once_however_often_the_state_is_written(tmp
         encoded.append(document["number"])
         return texts_of(document, **more)
 
-    monkeypatch.setattr(told_search, "texts_of", counted)
+    monkeypatch.setattr(search_state, "texts_of", counted)
     state = tmp_path / "run.json"
     run(search_of(state=state))
     assert encoded == list(range(1, 46))
-    loaded = told_search.SearchState.load(state)  # which checks the checksum
+    loaded = search_state.SearchState.load(state)  # which checks the checksum
     loaded.save(tmp_path / "again.json")
     assert (tmp_path / "again.json").read_text() == state.read_text()
 

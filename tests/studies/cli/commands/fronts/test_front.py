@@ -17,6 +17,7 @@ from quietarm.ocp import (
     Front,
     PointToPoint,
     epsilon_front,
+    evaluate_coefficients,
     polish_front,
     weighted_front,
 )
@@ -67,7 +68,7 @@ def test_the_other_solver_checks_the_front(done):
     assert -1e-6 <= low <= high <= 1e-6
 
 
-# --polish
+# Fronts from files: polished, interpolated, exported
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +107,7 @@ def test_motions_between_the_points_of_a_front_are_added_and_written(call, rough
     finer = Front.load("finer.json")
     added = [point for point in finer.points if point not in rough.points]
     assert len(added) > len(rough.points)
-    assert f"{len(added)} of 294 motions between its points are on the front" in out
+    assert f"{len(added)} of 294 motions tried between its points were added" in out
     assert finer.record.evaluations == 100 + 294
     assert np.abs(finer.coefficients).max() <= 0.5
     judged = finer.judged(added[len(added) // 2])
@@ -116,6 +117,9 @@ def test_motions_between_the_points_of_a_front_are_added_and_written(call, rough
     table = np.column_stack([finer.residuals, finer.energies])
     assert len(non_dominated_rows(table)) == len(table)
     assert "<svg" in Path("finer.svg").read_text()
+    assert call("front --interpolate finer.json --output again.json")[0] == 0
+    again = Front.load("again.json").record
+    assert again.settings["interpolated"] == again.evaluations - 100  # of both times
 
 
 def test_what_a_front_is_interpolated_from_is_not_changed_by_options(refused, rough):
@@ -123,6 +127,24 @@ def test_what_a_front_is_interpolated_from_is_not_changed_by_options(refused, ro
     line = "front --interpolate rough.json"
     assert "--bound is not for --interpolate, which keeps the" in refused(f"{line} --bound 1")
     assert "is not for --polish" in refused("front --polish rough.json --interpolate other.json")
+
+
+def test_the_motion_of_a_front_within_a_residual_is_exported(call, refused, rough):
+    """It is the cheapest of those within it, written as its plan is."""
+    rough.save("rough.json")
+    limit = rough.residuals[3] + 1e-9
+    code, _, err = call(f"export rough.json --residual-limit {limit} --output move.csv --rate 200")
+    assert code == 0, err
+    chosen = rough.cheapest(residual_limit=limit)
+    plan = evaluate_coefficients(rough.task, chosen.coefficients, profile=rough.profile)
+    plan.save("plan.json")
+    assert call("export plan.json --output same.csv --rate 200")[0] == 0
+    assert Path("move.csv").read_text() == Path("same.csv").read_text()
+    assert "such as --residual-limit 1mm" in refused("export rough.json --output move.st")
+    line = "--residual-limit 1mm --output"
+    assert "a plan is one motion" in refused(f"export plan.json {line} move.st")
+    assert "html shows whole fronts" in refused(f"export rough.json {line} move.html")
+    assert "give 0 or more" in refused("export rough.json --residual-limit=-1mm --output move.st")
 
 
 # A file states figures, which are computed again before they count

@@ -133,6 +133,11 @@ def test_what_is_stopped_keeps_the_candidates_until_then(call, folder, method):
     _, out, err = call(line)
     assert f"the first {count} candidates is shown and not written" in err
     assert f"{count} candidates in" in out
+    _, out, err = call(f"{line} --state kept.state")  # as many as without a state
+    assert f"the front of the first {count} candidates" in err
+    assert f"kept.state has {count} results, type the same command to go on" in err
+    code, out, _ = call(f"{line} --state kept.state")
+    assert f"{count} results from kept.state" in out
 
 
 @pytest.mark.slow_after(1)
@@ -153,6 +158,29 @@ def test_a_killed_command_goes_on_with_what_its_file_has(folder, method):
     assert kept == whole
     subprocess.run(line, check=True)  # nothing is left to do
     assert len((folder / "calls.txt").read_text()) == once + 60
+
+
+@pytest.mark.usefixtures("simulator")
+def test_a_damaged_state_is_named_with_what_to_do(call, refused, folder):
+    line = "search --function simulator.py:boxed --evaluations 30 --quiet --state a.state"
+    assert call(line)[0] == 0
+    text = (folder / "a.state").read_text()
+    for damaged in ("", text[:300], text.replace("0.1", "0.2")):
+        (folder / "a.state").write_text(damaged)
+        assert refused(line).endswith("; delete it to begin again, or give another file\n")
+        assert (folder / "a.state").read_text() == damaged
+
+
+@pytest.mark.usefixtures("simulator")
+def test_threads_keep_each_result(call, folder):
+    """The slowest of a block does not hold back the results of the others."""
+    line = "search --function simulator.py:stopped --evaluations 60 --method nsga2 --quiet"
+    code, _, err = call(f"{line} --threads 4 --state kept.state")
+    assert code == 128 + 15
+    calls = len((folder / "calls.txt").read_text())
+    assert calls >= 30
+    failed = calls // 30
+    assert f"kept.state has {calls - failed} results" in err
 
 
 @pytest.mark.usefixtures("simulator")
