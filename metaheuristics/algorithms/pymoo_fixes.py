@@ -124,16 +124,14 @@ def agemoea2(pop_size: int, **options: Any) -> Any:
     """AGE-MOEA-II; pymoo's divides by zero if all of its individuals have the same values."""
     from pymoo.algorithms.moo import age2  # not at the top: it needs numba
 
-    class Survival(age2.AGEMOEA2Survival):
-        """The survival, in which individuals at the ideal point have no distance."""
+    algorithm: Any = age2.AGEMOEA2(pop_size, **options)
+    distances_of_pymoo = algorithm.survival.pairwise_distances
 
-        @staticmethod
-        def pairwise_distances(front: NDArray[np.float64], p: float) -> NDArray[np.float64]:
-            """Distances along the front, shape (individuals, individuals)."""
-            if (front <= 0).all(axis=1).any():
-                return np.zeros((len(front), len(front)))
-            return age2.AGEMOEA2Survival.pairwise_distances(front, p)
+    def pairwise_distances(front: NDArray[np.float64], p: float) -> NDArray[np.float64]:
+        """Distances along the front; individuals at the ideal point have none."""
+        if (front <= 0).all(axis=1).any():
+            return np.zeros((len(front), len(front)))
+        return distances_of_pymoo(front, p)
 
-    algorithm = age2.AGEMOEA2(pop_size, **options)
-    algorithm.survival = Survival()
+    algorithm.survival.pairwise_distances = pairwise_distances
     return algorithm
