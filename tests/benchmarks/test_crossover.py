@@ -194,6 +194,17 @@ def test_holm_is_over_all_rows_of_the_first_table():
     assert of_methods == {"p": 0.1, "holm": 0.6, "holm_of_table": 0.6}
 
 
+@pytest.mark.slow  # it compiles a profile for each shaper
+def test_a_search_takes_every_shaper_though_one_leaves_nothing_to_choose(tmp_path):
+    """Through one of them this carriage's front is a single motion: no scale for others."""
+    (move,) = (move for move in DRAWN if move.name == "linear-axis-m3")
+    planned = Planned("integers", 0, Case(move, 6, "shaper"), "slsqp", 90, in_turn=True)
+    front = run.front_by_every_number(planned, tmp_path)
+    assert front.points
+    assert front.history[-1].evaluations == 4 * (90 // 4)
+    assert set(front.coefficients[:, 0]) <= {1.0, 2.0, 3.0, 4.0}
+
+
 def test_tuned_settings_are_run_under_the_label_by_which_the_figures_find_them():
     """Evaluations of a candidate are tuned as a setting is, and are an argument of the run."""
     settings = {"scale": 0.5, "reevaluate": 3, "population": 30}

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import quietarm as qa
-from quietarm.metaheuristics import Job, NamedProblem
+from quietarm.metaheuristics import search
 from quietarm.metaheuristics.methods.gradient_methods import gradient_front
 from quietarm.metaheuristics.named_method import NamedMethod
 from quietarm.ocp.front.points import Mark
@@ -67,12 +67,22 @@ def search_of_every_number(
     seed: int,
 ) -> qa.Front:
     """A method's fronts of all numbers as one front, each with an equal part of the budget."""
+    rehearsal = 20  # candidates: what is compiled first is no part of the effort
+
+    def front_of(number: int, evaluations: int) -> qa.Front:
+        return search(
+            task,
+            profile.alone(number),
+            algorithm=method,
+            bound=profile.bound_of(number, bound),
+            evaluations=evaluations,
+            seed=seed,
+        )
+
     fronts = list[qa.Front]()
     for number in range(1, profile.most + 1):
-        problem = NamedProblem(
-            f"number-{number}", task, profile.alone(number), profile.bound_of(number, bound)
-        )
-        fronts.append(Job(problem, method, seed=seed, budget=budget // profile.most).run())
+        front_of(number, rehearsal)
+        fronts.append(front_of(number, budget // profile.most))
     return with_effort_of_all(merged(task, profile, bound, fronts, method), fronts)
 
 
