@@ -220,17 +220,20 @@ def _answers(form: ExportFormat, given: Given) -> Mapping[str, Any]:
         return answers
     if not any(isinstance(answer, Front) for answer in answers.values()):
         given.refuse([RESIDUAL_LIMIT], "is for a front, and a plan is one motion")
-    return {name: _plan_of(name, answer, given) for name, answer in answers.items()}
+    return {
+        name: _plan_of(path, answer, given)
+        for path, (name, answer) in zip(paths, answers.items(), strict=True)
+    }
 
 
-def _plan_of(name: str, answer: Front | Plan, given: Given) -> Plan:
+def _plan_of(path: Path, answer: Front | Plan, given: Given) -> Plan:
     """A plan as it is; of a front the motion that was chosen."""
     if isinstance(answer, Plan):
         return answer
     limit = given.read_residual_limit(answer.task.plant)
     if limit is None:
         raise ValueError(
-            f"{name} is a front; choose one of its motions by its residual, such as "
+            f"{path} is a front; choose one of its motions by its residual, such as "
             "--residual-limit 1mm"
         )
     point = answer.cheapest(residual_limit=limit)
