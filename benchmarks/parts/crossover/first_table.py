@@ -60,12 +60,15 @@ def line_of(row: Row, of_values: str) -> dict[str, str]:
     }
     taken = "search" if winner == "search" else OF_RIVAL[row["rival"]]
     cells[taken] = bold(cells[taken])
+    if row["row"] == "jumps":  # its front there has fewer
+        cells["gradient"] += " (20 points)"
+    equal = sum(one["equal"] for one in comparisons)
     return {
         "title": TITLES[row["row"]],
-        "take": take_words(row, winner, is_sure),
+        "take": take_words(row, winner, is_sure) + " (half equal)" * (2 * equal >= problems),
         **cells,
         "better": f"{better if winner == 'search' else problems - better}/{problems}",
-        "equal": str(sum(one["equal"] for one in comparisons)),
+        "equal": str(equal),
         "p": p_words(row),
     }
 
@@ -163,8 +166,8 @@ def indicator_words(row: Row, comparison: Row, indicator: str) -> str:
 def by_indicators(rows: Sequence[Row]) -> dict[str, int]:
     """Count what other indicators say of the table's comparisons.
 
-    Of those with a verdict: how many lose it by some other indicator, and how many are turned round
-    by one.
+    Of those that are significant: how many are not by some other indicator, and how many are
+    reversed by one.
     """
     counts = {"verdicts": 0, "lost": 0, "turned": 0}
     for row in rows:
@@ -176,7 +179,7 @@ def by_indicators(rows: Sequence[Row]) -> dict[str, int]:
             turned = -side in others
             counts["verdicts"] += 1
             counts["turned"] += turned
-            counts["lost"] += not turned and others != {side}
+            counts["lost"] += 0 in others
     return counts
 
 
