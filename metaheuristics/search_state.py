@@ -54,7 +54,7 @@ class Told:
 
 @dataclass(frozen=True)
 class SearchState(Answer):
-    """The state of a `Search`: what was asked for, and what was told until now.
+    """The state of a search: what was asked for, and what was told until now.
 
     Attributes
     ----------
@@ -116,8 +116,12 @@ class SearchState(Answer):
         return of_function | {name: named[name] for name in named if name not in own}
 
 
+class StateError(ValueError):
+    """A state file is of another search, or was changed by another program."""
+
+
 class StateFile:
-    """The file of a state: what it has from before, and each writing of what is told since.
+    """A state in a file: what it holds from an earlier run, and what is told since.
 
     Parameters
     ----------
@@ -128,8 +132,10 @@ class StateFile:
 
     Raises
     ------
-    ValueError
-        When the file is damaged, or of another search.
+    FileFormatError
+        When the file is damaged.
+    StateError
+        When it is of another search.
     """
 
     def __init__(self, path: Path | None, state: SearchState) -> None:
@@ -140,18 +146,18 @@ class StateFile:
         self.told = {told.number: told for told in self._resumed()}
 
     def known(self, number: int, coefficients: Array) -> Told | None:
-        """Return what the file has of a candidate; ValueError if that is another one there."""
+        """Return what the file has of a candidate; StateError if its number is another's there."""
         told = self.told.get(number)
         if told is not None and told.coefficients != tuple(coefficients.tolist()):
-            raise ValueError(self._why_another(number))
+            raise StateError(self._why_another(number))
         return told
 
     def save(self, told: Sequence[Told]) -> None:
-        """Write what is told; ValueError if another program has written the file since."""
+        """Write what is told; StateError if another program has written the file since."""
         if self.path is None:
             return
         if _stamp(self.path) != self._written:
-            raise ValueError(
+            raise StateError(
                 f"{self.path} was changed by another program since this search read it; begin "
                 "again from the file, or give each search a file of its own"
             )
@@ -170,12 +176,12 @@ class StateFile:
                 f"{what}; delete it to begin again, or give another file"
             ) from None
         if differences := before.differences(self._state):
-            raise ValueError(
+            raise StateError(
                 f"{self.path} is of another search: its {', its '.join(differences)}; give what "
                 "it was begun with, or another file"
             )
         if before.evaluations > self._state.evaluations:
-            raise ValueError(
+            raise StateError(
                 f"{self.path} is of {before.evaluations} evaluations, not "
                 f"{self._state.evaluations}; give {before.evaluations} or more, or another file"
             )
@@ -198,7 +204,7 @@ class StateFile:
 
 
 class KeptValues:
-    """Values of a function in the file of a state, so that none is computed again.
+    """A function's values, kept in a state file so that none is computed again.
 
     Candidates are numbered in the order in which a search asks for them.
     """
@@ -224,7 +230,7 @@ class KeptValues:
     def take(self, candidates: Array, values: Array) -> tuple[int, NDArray[np.bool_]]:
         """Write known values into a table; the number of its first candidate, and which are new.
 
-        ValueError when the file has another candidate of that number.
+        StateError when the file has another candidate of that number.
         """
         first = self._asked + 1
         self._asked += len(candidates)

@@ -20,7 +20,7 @@ from quietarm.ocp.task import PointToPoint
 
 Array = NDArray[np.float64]
 BETWEEN = 300
-"""Motions between the points of a front, about."""
+"""About so many motions are tried between the points of a front."""
 INTERPOLATED = "interpolated"
 """The setting of a record that counts them."""
 
@@ -29,8 +29,8 @@ INTERPOLATED = "interpolated"
 def interpolate_front(front: Front) -> Front:
     """Add the motions between neighbours on a front, with interpolated coefficients.
 
-    About 300 motions are evaluated. So a search with few candidates gives a finer trade-off, for
-    no more of them than a simulation each.
+    About 300 motions are simulated. The front of a search with few candidates becomes finer by
+    them, without a further search.
 
     Parameters
     ----------
@@ -80,8 +80,8 @@ def interpolate_front(front: Front) -> Front:
 def coefficients_between(front: Front) -> Array:
     """Coefficients between neighbours on a front, shape (motions, size); the points not among them.
 
-    Of two objectives neighbours are those along the front, of more the nearest. The box is convex:
-    what lies between two of its motions is in it.
+    Neighbours follow each other along the front; with more than two objectives they are the nearest
+    points. The box is convex, so what lies between two of its motions is in it.
     """
     points = front.objective_values
     pairs = np.array(_neighbours(points)) if len(points) > 1 else np.empty((0, 2), dtype=int)

@@ -18,7 +18,7 @@ from quietarm.metaheuristics.search_run import (
     SearchRun,
     default_of_function,
 )
-from quietarm.metaheuristics.search_state import KeptValues
+from quietarm.metaheuristics.search_state import KeptValues, StateError
 from quietarm.ocp import Front, PointToPoint, QuietarmError, SolverFailedError
 from quietarm.ocp.checks import whole
 from quietarm.ocp.objectives import checked_objectives
@@ -173,17 +173,19 @@ def search(given: Given) -> None:
                 if several:
                     _save_at_once(given.output, front)
                 display.finish(front)
+        except StateError:
+            raise  # what was written before stays: nothing new was found
         except (Exception, SystemExit, KeyboardInterrupt) as error:
             stopped = asked.until_the_stop()
-            words = _kept_words(fronts, stopped, given.runs, is_written=bool(given.output))
-            words = "; ".join(filter(None, [words, asked.state_words()]))
-            if not (fronts or stopped) and not words:
+            kept = _kept_words(fronts, stopped, given.runs, is_written=bool(given.output))
+            words = "; ".join(filter(None, [kept, asked.state_words()]))
+            if not words:
                 raise
             trouble = _trouble(error, words)
+            if not kept:
+                raise trouble from None
     fronts.sort(key=lambda front: front.record.seed or 0)
     shown = fronts or stopped  # no statistics of seeds with one that was cut short
-    if not shown and trouble is not None:
-        raise trouble
     if not any(front.points for front in shown):
         raise trouble or SolverFailedError(f"{method}: {shown[0].why_empty()}")
     finish(

@@ -142,7 +142,7 @@ def test_what_is_stopped_keeps_the_candidates_until_then(call, folder, method):
 
 @pytest.mark.slow_after(1)
 @pytest.mark.usefixtures("simulator")
-@pytest.mark.parametrize("method", ["gp", "es", "nsga2 --population 8 --reevaluate 2"])
+@pytest.mark.parametrize("method", ["es", "gp", "nsga2 --population 8 --reevaluate 2"])
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_a_killed_command_goes_on_with_what_its_file_has(folder, method):
     """No candidate is evaluated again, and the front is that of a search without a stop."""
@@ -169,6 +169,17 @@ def test_a_damaged_state_is_named_with_what_to_do(call, refused, folder):
         (folder / "a.state").write_text(damaged)
         assert refused(line).endswith("; delete it to begin again, or give another file\n")
         assert (folder / "a.state").read_text() == damaged
+
+
+@pytest.mark.usefixtures("simulator")
+def test_a_state_that_does_not_fit_leaves_the_front_that_was_written(call, refused, folder):
+    """With more evaluations the population is larger: other candidates are asked for."""
+    line = "search --function simulator.py:boxed --method nsga2 --quiet --state a.state -o a.json"
+    assert call(f"{line} --evaluations 40")[0] == 0
+    before = (folder / "a.json").read_text()
+    said = refused(f"{line} --evaluations 1000")
+    assert said.endswith("; give 40, or another file\n")
+    assert (folder / "a.json").read_text() == before
 
 
 @pytest.mark.usefixtures("simulator")
